@@ -17,12 +17,12 @@ sys.path[:0] = [str(ROOT / "packaging"), str(ROOT / "python" / "contact_normal")
 from _names import names  # noqa: E402
 from library_file import read  # noqa: E402
 
-# What sys.platform is where a library of this kind runs.
+# sys.platform of the systems on which a library of this kind runs.
 PLATFORMS = {"linux": "linux", "macosx": "darwin", "win": "win32"}
 
 
 class Library(BuildHookInterface):
-    """What hatchling calls before it writes a wheel."""
+    """The hook that hatchling calls before it writes a wheel."""
 
     def initialize(self, version, build_data):
         root = Path(self.root)
@@ -32,7 +32,7 @@ class Library(BuildHookInterface):
         self.folder = tempfile.TemporaryDirectory()
         stripped = Path(self.folder.name) / name
         shutil.copyfile(library, stripped)
-        # On macOS the debug information is not in the library; on Windows strip is MinGW-w64's, if the library is.
+        # On macOS the debug information is not in the library. On Windows strip is MinGW-w64's, if the library was built with it.
         strip = os.environ.get("STRIP", "strip")
         if file.system == "linux" or file.system == "win" and shutil.which(strip):
             subprocess.run([strip, "--strip-unneeded", stripped], check=True)

@@ -1,4 +1,4 @@
-//! Lack of memory is a status, at whichever allocation it comes; what was allocated is freed.
+//! A failure of any allocation is a status, and no memory leaks.
 
 #[path = "handles/limited_memory.rs"]
 mod limited_memory;
@@ -17,7 +17,7 @@ fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
     }
 }
 
-/// A ball on m x m elements, pressed by an approach that leaves contact a part of them.
+/// A ball on m x m elements, with an approach for which only a part of them is in contact.
 fn scene(m: usize, h: &mut Vec<f64>) -> contact_normal_scene {
     let centre = |i: usize| i as f64 + 0.5 - 0.5 * m as f64;
     *h = (0..m * m).map(|i| (centre(i % m).powi(2) + centre(i / m).powi(2)) / (m * m) as f64).collect();
@@ -28,7 +28,7 @@ fn scene(m: usize, h: &mut Vec<f64>) -> contact_normal_scene {
     scene
 }
 
-/// What is kept is kept for the process: one test at a time counts it.
+/// Kept memory belongs to the process: one test at a time counts it.
 fn alone() -> MutexGuard<'static, ()> {
     static ONE: Mutex<()> = Mutex::new(());
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
@@ -42,7 +42,7 @@ const METHODS: [i32; 5] = [
     CONTACT_NORMAL_METHOD_PROJECTED_CG,
 ];
 
-/// Solves with so many large allocations allowed. Outputs must be untouched if there are too few.
+/// Solves with `allowed` successful large allocations. Without a result the outputs must be unchanged.
 fn solve_with(scene: &contact_normal_scene, options: &contact_normal_options, allowed: u64, p: &mut [f64]) -> i32 {
     let mut fields = initialised(contact_normal_fields_init);
     fields.pressure = p.as_mut_ptr();
@@ -58,7 +58,7 @@ fn solve_with(scene: &contact_normal_scene, options: &contact_normal_options, al
 #[test]
 fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
     let _alone = alone();
-    // An array of one byte an element is large then, and no array of a row or a transform is.
+    // Arrays of one byte per element count as large, but no array of a row or of a transform does.
     let m = 256;
     let mut h = Vec::new();
     let scene = scene(m, &mut h);
@@ -73,7 +73,7 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
     assert_eq!(status, CONTACT_NORMAL_OK);
     (influence.cx, influence.cy, influence.coefficients) = (m as i32, m as i32, table.as_ptr());
     let with_table = contact_normal_scene { influence: &influence, ..scene };
-    // Few rows: else the tables would be gigabytes. But not so few that the plans of rows are large: the FFT crate cannot refuse.
+    // Few rows, so that the tables are not gigabytes, but enough that plans of rows are small: the FFT crate cannot refuse.
     let my = 64;
     let mx = m * m / my;
     let mut values = vec![0.0; my * my * 2 * mx];
@@ -95,7 +95,7 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
         for &method in methods {
             let mut options = initialised(contact_normal_options_init);
             (options.method, options.tolerance, options.max_cycles) = (method, 1e-3, 2);
-            // What the first solve of a kind leaves is for the process.
+            // The first solve of a kind keeps memory for the process.
             assert!(solve_with(scene, &options, u64::MAX, &mut vec![0.0; m * m]) >= 0);
             let what = format!("{name}, method {method}");
             let refused = limited_memory::until_enough(&what, |allowed| {
@@ -105,7 +105,7 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
                 // The message of the last refusal is kept for the thread.
                 let kept = limited_memory::held() - held;
                 assert!(kept.abs() < 500, "{what}, {allowed} allocations: {kept} bytes are held");
-                // Two cycles are enough of a solve.
+                // Two cycles suffice.
                 status.min(CONTACT_NORMAL_OK)
             });
             assert!(refused > 8, "{what}: {refused} refusals");
@@ -116,7 +116,7 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
 #[test]
 fn an_absurd_size_is_out_of_memory() {
     let _alone = alone();
-    // Zeros that no page stands behind: the operator would be larger still.
+    // Zeros without pages behind them; the operator would be even larger.
     let m = 8_000;
     let bytes = m * m * size_of::<f64>();
     let flags = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | libc::MAP_NORESERVE;
@@ -156,7 +156,7 @@ fn ten_thousand_handles_leave_nothing_behind() {
             assert_eq!(status, CONTACT_NORMAL_OK);
             contact_normal_solver_free(handle);
         }
-        // What the first of each kind leaves is for the process.
+        // The first handle of each kind keeps memory for the process.
         if number == METHODS.len() {
             held = limited_memory::held();
         }
@@ -164,11 +164,11 @@ fn ten_thousand_handles_leave_nothing_behind() {
     assert_eq!(limited_memory::held(), held, "bytes are held after 10^4 handles");
 }
 
-/// Bytes of a handle that solved a scene: those that its report has, and those that it held.
+/// The bytes of a handle after a solve: those of its report, and those that it holds.
 fn bytes_of(scene: &contact_normal_scene, what: &str) -> [f64; 2] {
     let options: contact_normal_options = initialised(contact_normal_options_init);
     let mut bytes = [0.0; 2];
-    // Plans of transforms are the thread's: they are there the second time.
+    // Plans of transforms belong to the thread: the second time they exist.
     for _ in 0..2 {
         // SAFETY (all): structs with their arrays, a handle of ours, and NULL.
         contact_normal_release();
@@ -187,7 +187,7 @@ fn bytes_of(scene: &contact_normal_scene, what: &str) -> [f64; 2] {
     bytes
 }
 
-/// `bytes` of a report grow with friction as much as the handle does: by its operators, their workspaces and the arrays of its iterations.
+/// `bytes` of a report grow with friction as the memory of the handle does: by its operators, their workspaces and the arrays of its iterations.
 #[test]
 fn reported_bytes_grow_by_what_friction_holds() {
     let _alone = alone();
@@ -204,7 +204,7 @@ fn reported_bytes_grow_by_what_friction_holds() {
             let without = bytes_of(&contact_normal_scene { friction: null(), ..scene }, &what);
             let with = bytes_of(&contact_normal_scene { friction: &friction, ..scene }, &what);
             let [reported, held] = [0, 1].map(|i| with[i] - without[i]);
-            // Blocks may have more room than they are asked for, and room for lists, most of which is never touched, is not counted.
+            // Blocks may be larger than requested, and the reserved room of lists is not counted.
             assert!((reported / held - 1.0).abs() <= 0.1, "{what}: {reported} bytes reported, {held} held");
         }
     }

@@ -1,4 +1,5 @@
-//! What rests between its uses changes no bit of a result. A program of its own: which arrays rest is a setting of the process.
+//! Arrays that rest between their uses give the same bits. This is a separate program, because the size from which arrays rest is a setting of the
+//! process.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
@@ -22,7 +23,7 @@ fn bits_of_solves(h: &[f64], m: usize) -> Vec<u64> {
 
 #[test]
 fn what_rests_between_its_uses_changes_no_bit() {
-    // On a window, on the whole grid.
+    // On a window, and on the whole grid.
     for reach in [0.3, 1.2] {
         let m = 80;
         let from_centre = |i: usize| (i as f64 + 0.5) / (0.5 * m as f64) - 1.0;

@@ -1,11 +1,11 @@
-//! What was run, what came of it, what was excused, and every failure.
+//! The account of a campaign: the cases and their results, the excuses, and every failure.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 
 use crate::run::{Run, BESIDE};
 
-/// Counts of calls by how they ended: solved, stopped (> 0), refused (< 0).
+/// Counts of calls by their end: solved, stopped (> 0), refused (< 0).
 #[derive(Clone, Copy, Default)]
 struct Ends {
     solved: usize,
@@ -32,7 +32,7 @@ impl Ends {
 pub struct Excuses(BTreeMap<&'static str, (usize, u64)>);
 
 impl Excuses {
-    /// Adds those of a seed.
+    /// Adds the excuses of a seed.
     pub fn add(&mut self, excuses: &[&'static str], seed: u64) {
         for why in excuses {
             self.0.entry(why).or_insert((0, seed)).0 += 1;
@@ -61,10 +61,10 @@ pub struct Account {
     by_method: BTreeMap<&'static str, Ends>,
     by_surface: BTreeMap<String, Ends>,
     beside: BTreeMap<String, Ends>,
-    /// Products of AUTO, and the seed, by surface.
+    /// Products of AUTO and the seed, by surface.
     products: BTreeMap<String, Vec<(f64, u64)>>,
     excuses: Excuses,
-    /// Per promise: seed and what happened.
+    /// Failures by promise: seed and details.
     failures: BTreeMap<&'static str, Vec<(u64, String)>>,
 }
 
@@ -76,7 +76,7 @@ impl Account {
         if run.seconds > self.longest.0 {
             self.longest = (run.seconds, run.case.seed);
         }
-        // Without its faults.
+        // The name of the surface without its faults.
         let surface = run.case.surface.split(" + ").next().unwrap_or_default().to_string();
         let effects = self.by_effects.entry(run.case.effects.name()).or_default();
         let method = self.by_method.entry(run.case.method()).or_default();
@@ -105,12 +105,12 @@ impl Account {
         self.failures.is_empty()
     }
 
-    /// How many calls were solved: an account of refusals would be worth nothing.
+    /// The number of calls that were solved. Without it an account of refusals would look clean.
     pub fn solved(&self) -> usize {
         self.by_method.values().map(|ends| ends.solved).sum()
     }
 
-    /// At most so many failures of each promise, in full.
+    /// At most `most` failures of each promise, in full.
     pub fn failures(&self, most: usize) -> String {
         let mut text = String::new();
         for (promise, list) in &self.failures {

@@ -1,4 +1,4 @@
-//! A solve to an accuracy: a ball, whose exact solution (Hertz 1882) the force or the approach is compared with.
+//! A solve to an accuracy: a ball, whose force or approach is compared with the exact solution (Hertz 1882).
 
 use std::f64::consts::PI;
 use std::ffi::c_void;
@@ -12,7 +12,7 @@ use crate::init::initialised;
 use crate::random::Random;
 use crate::verdict::Failure;
 
-/// h = r^2/(2 R), from a place of the rectangle.
+/// h = r^2/(2 R), around a place of the rectangle.
 struct Ball {
     radius: f64,
     centre: [f64; 2],
@@ -30,14 +30,14 @@ unsafe extern "C" fn write(mx: i32, my: i32, dx: f64, dy: f64, h: *mut f64, user
     0
 }
 
-/// Elements of the finest grid that is allowed.
+/// The largest number of elements of the finest grid.
 const MOST: i64 = 256 * 256;
 
-/// One search.
+/// Checks one search.
 pub fn check(random: &mut Random) -> Vec<Failure> {
     let (unit, modulus) = (random.decades(1e-3, 1e3), random.decades(1e-6, 1e6));
     let (shear_modulus, poisson_ratio) = ([modulus, f64::INFINITY], [random.between(0.0, 0.5), 0.3]);
-    // E* = 1/(pi c); a contact of a radius that is this part of half the rectangle's shorter side.
+    // E* = 1/(pi c). The contact radius is a part of half the rectangle's shorter side.
     let e_star = 1.0 / (PI * compliance(shear_modulus, poisson_ratio));
     let (m, ratio) = (random.integer(4, 24) as f64, random.between(0.6, 1.6));
     let (mx, my) = (m as i32, (m * ratio).ceil() as i32);
@@ -72,12 +72,12 @@ pub fn check(random: &mut Random) -> Vec<Failure> {
     );
     let elements = i64::from(accuracy.mx) * i64::from(accuracy.my);
     let across = 2.0 * a / unit * f64::from(accuracy.mx) / m;
-    // On 6 and 7 elements across one estimate in forty is less than the error, and none by half (docs/notes/2026-11-accuracy.md).
+    // With 6 and 7 elements across one estimate in forty is below the error, and none by half (docs/notes/2026-11-accuracy.md).
     let allowed = if across < 8.0 { 1.5 * target } else { target };
     let holds = match status {
         CONTACT_NORMAL_OK => reached >= 0.0 && reached <= target && error <= allowed,
-        // The next grid would have been too large. Contacts of less than 6 elements across meet no target, whatever they reach; the
-        // centre lies within an element.
+        // The next grid would have been too large. Contacts of less than 6 elements across never meet a target. The centre may lie anywhere within an
+        // element.
         CONTACT_NORMAL_ITERATION_LIMIT => 4 * elements > MOST && (reached > target || across < 7.0),
         _ => false,
     };

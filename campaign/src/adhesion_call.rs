@@ -1,4 +1,4 @@
-//! Calls of scenes with adhesion, and what they write.
+//! Calls of scenes with adhesion, and their outputs.
 
 use contact_normal::ffi::*;
 
@@ -9,7 +9,7 @@ use crate::effects::Values;
 use crate::grid::Load;
 use crate::init::initialised;
 
-/// What a call wrote.
+/// The outputs of a call.
 #[derive(Clone)]
 pub struct Found {
     pub status: i32,
@@ -22,22 +22,22 @@ pub struct Found {
 }
 
 impl Found {
-    /// All of it that must be the same from call to call.
+    /// The bits that must be equal for equal calls.
     pub fn bits(&self) -> Vec<u64> {
         let fields = self.p.iter().chain(&self.q).chain(&self.tractions[0]).map(|value| value.to_bits());
         fields.chain([self.report.normal.approach.to_bits(), self.status as u64]).collect()
     }
 }
 
-/// Who is asked.
+/// The function that solves.
 pub enum Asked {
     Solve,
     PullOff,
-    /// A handle, and whether it goes on from its last result.
+    /// A handle, and whether it continues from its last result.
     Handle(*mut contact_normal_solver, bool),
 }
 
-/// One call.
+/// Makes one call.
 pub fn ask(case: &Case, load: Load, asked: &Asked) -> Found {
     let n = case.grid.len();
     let structs = effect_structs(&case.effects);

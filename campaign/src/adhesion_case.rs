@@ -22,7 +22,7 @@ pub struct Case {
     pub law: i32,
     pub smear: f64,
     pub work: Values,
-    /// The range of the attraction; 0: the shortest that the elements resolve.
+    /// The range of the attraction; 0 stands for the shortest range that the elements resolve.
     pub range: f64,
     /// The largest slope of the attraction times the influence of an element on itself.
     pub kappa: f64,
@@ -67,18 +67,18 @@ fn grid(random: &mut Random) -> Grid {
     Grid { mx, my, dx, dy: dx * if random.chance(0.7) { 1.0 } else { random.decades(0.3, 3.0) } }
 }
 
-/// A surface, with a work of adhesion that suits it.
+/// A surface with a suitable work of adhesion.
 struct Surface {
     name: String,
     h: Vec<f64>,
     work: f64,
-    /// The scale of forces; of balls the pull that separates one.
+    /// The scale of forces: for balls the pull-off force.
     force: f64,
     /// The scale of approaches: the depth of contact of balls, or the height of the roughness.
     height: f64,
 }
 
-/// One or two balls. Without a load the radius of contact is .15 to .6 of half the grid.
+/// One or two balls. Without a load the contact radius is .15 to .6 of half the grid.
 fn balls(random: &mut Random, grid: &Grid, modulus: f64) -> Surface {
     let half = 0.5 * (grid.mx as f64 * grid.dx).min(grid.my.max(2) as f64 * grid.dy);
     let (a, radius) = (half * random.between(0.15, 0.6), half * random.decades(2.0, 1e4));
@@ -96,7 +96,7 @@ fn balls(random: &mut Random, grid: &Grid, modulus: f64) -> Surface {
     Surface { name: "balls".into(), h: h.collect(), work, force, height: a * a / radius }
 }
 
-/// A rough surface, a punch or a wave. The work of adhesion is a part of the energy that flattens it.
+/// A rough surface, a punch or a wave. The work of adhesion is a part of the energy to flatten it.
 fn rough(random: &mut Random, grid: &Grid, modulus: f64) -> Surface {
     let (name, mut h) = measured::surface(random, grid);
     let height = grid.dx * random.decades(1e-3, 0.3);
@@ -190,8 +190,8 @@ fn load(random: &mut Random, surface: &Surface, range: f64) -> Load {
     }
 }
 
-/// For two periods: replaces some loads by approaches from just before the first touch to just below the mean distance. Its random numbers are its
-/// own, so that all other scenes stay the same.
+/// For two periods: replaces some loads by approaches from just before the first contact to just below the mean distance. It uses a separate sequence
+/// of random numbers, so that all other scenes do not change.
 fn below_mean(h: &[f64], load: Load) -> Load {
     let mut random = Random::new(h.iter().fold(h.len() as u64, |seed, h| seed.rotate_left(5) ^ h.to_bits()));
     let (mean, lowest) = (h.iter().sum::<f64>() / h.len() as f64, h.iter().copied().fold(f64::INFINITY, f64::min));
@@ -226,7 +226,7 @@ fn effects(random: &mut Random, grid: &Grid, bodies: ([f64; 2], [f64; 2])) -> Ef
     effects
 }
 
-/// Whether friction may be added. Of coated bodies it is solved only if both have the same coating, which is rare here.
+/// Whether friction may be added. With coated bodies it requires equal coatings, which are rare here.
 fn friction_goes(effects: &Effects) -> bool {
     effects.period.is_none() && effects.patches.is_none() && effects.coating.is_none()
 }

@@ -1,4 +1,4 @@
-//! Batches: each problem is certified, has the bits of a call of its own, and none keeps another from being solved.
+//! Batches: each problem is certified and has the bits of a single call, and a refused one does not affect the others.
 
 use crate::call::{self, Handle};
 use crate::case::{Case, How};
@@ -6,10 +6,10 @@ use crate::random::Random;
 use crate::rules::check;
 use crate::verdict::Verdict;
 
-/// Solves a case and some of its kind in one call; now and then one of them is none.
+/// Solves a case and some similar ones in one call; now and then one of them is invalid.
 pub fn run(case: &Case, random: &mut Random) -> Verdict {
     let mut first = case.clone();
-    // What all problems of a batch have in common.
+    // The options that all problems of a batch share.
     first.how = How {
         threads: 1 + i32::from(random.chance(0.3)),
         given: None,

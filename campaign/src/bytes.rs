@@ -1,5 +1,5 @@
-//! What random bytes do to the C ABI: they become a scene, options, guesses and a table of coefficients, and whatever comes of that keeps
-//! the promises of the ABI. campaign/tests/random_bytes.rs and the cargo-fuzz targets in fuzz/ call this.
+//! Random bytes become a scene, options, guesses and a table of coefficients, and the call must keep the promises of the ABI.
+//! campaign/tests/random_bytes.rs and the cargo-fuzz targets in fuzz/ call this.
 
 use std::ptr::null_mut;
 
@@ -9,22 +9,22 @@ use contact_normal::ffi::*;
 use crate::bytes_call::Call;
 use crate::bytes_reader::{Bytes, Target};
 
-/// A scene and options from bytes, through the plain call and through a handle. Returns the statuses, here as below.
+/// A scene and options from bytes, through the plain call and through a handle. Returns the statuses, as the functions below do.
 pub fn scene_and_options(data: &[u8]) -> Vec<i32> {
     solve(data, Target::Scene)
 }
 
-/// The same with a table of coefficients.
+/// [`scene_and_options`] with a table of coefficients.
 pub fn tables(data: &[u8]) -> Vec<i32> {
     solve(data, Target::Table)
 }
 
-/// The same with friction.
+/// [`scene_and_options`] with friction.
 pub fn friction(data: &[u8]) -> Vec<i32> {
     solve(data, Target::Friction)
 }
 
-/// Bytes of a dump's file, read and, where the call is short, made again.
+/// Bytes of a dump's file, which is read and, if the call is short, replayed.
 pub fn dump(data: &[u8]) -> Vec<i32> {
     let Ok(dump) = Dump::read(data) else { return Vec::new() };
     let is_short = dump.options().is_some_and(|options| (0..=8).contains(&options.max_cycles))

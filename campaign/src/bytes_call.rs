@@ -1,4 +1,4 @@
-//! A call whose scene, options, guesses and effects are made of bytes, and what has to hold after it.
+//! A call whose scene, options, guesses and effects are made from bytes, and the checks after it.
 
 use std::ffi::CStr;
 use std::ptr::null;
@@ -16,7 +16,7 @@ use crate::grid::{Grid, Load};
 use crate::init::initialised;
 use crate::rules::is_true;
 
-/// Everything that a call reads or writes.
+/// All inputs and outputs of a call.
 pub struct Call {
     h: Vec<f64>,
     table: Vec<f64>,
@@ -25,7 +25,7 @@ pub struct Call {
     displacement: Vec<f64>,
     pub scene: contact_normal_scene,
     influence: contact_normal_influence,
-    /// The other effects, which the scene points to.
+    /// The other effects, to which the scene points.
     effects: Effects,
     structs: Box<EffectStructs>,
     distance: Vec<f64>,
@@ -80,12 +80,12 @@ impl Call {
         }
         for size in [&mut call.scene.struct_size, &mut call.options.struct_size, &mut call.fields.struct_size] {
             if bytes.byte() == 99 {
-                // A larger one would be read beyond its end: that is the caller's to get right.
+                // A larger size would be read beyond the end of the struct, which is an error of the caller.
                 *size = (*size).min(bytes.word() as i64);
             }
         }
         call.set_effects(bytes);
-        // After the effects, for the same reason.
+        // After the effects, whose sizes are cut for the same reason.
         if target == Target::Friction || bytes.byte() % 2 == 1 {
             let mut sliding = Box::new(Sliding::new(bytes, n, &mut call.scene));
             sliding.point_from(&mut call.fields);
@@ -107,24 +107,24 @@ impl Call {
         options.tolerance = bytes.sometimes(1e-6);
         (options.criterion, options.precision) = (bytes.integer(2), bytes.integer(3));
         options.error_ratio = bytes.sometimes(0.0);
-        // Small, so that a run of the harness is short; large ones are refused (tests/abi/bad_input.rs).
+        // The limit is small, so that a run is short. Values out of range are tested in tests/abi/bad_input.rs.
         options.max_cycles = bytes.integer(200).min(200);
         options.threads = 1;
     }
 
-    /// Whether the arrays hold the grid. One that they do not hold must be refused before they are read.
+    /// Whether the arrays are as long as the grid. Otherwise the call must be refused before they are read.
     fn has_room(&self) -> bool {
         let (mx, my) = (i64::from(self.scene.mx), i64::from(self.scene.my));
         mx > 0 && my > 0 && mx * my <= ROOM as i64
     }
 
-    /// A grid that is neither refused by its sizes nor has room may not be tried.
+    /// Whether the call may be made: the grid is refused by its sizes, or the arrays have room.
     pub fn may_be_tried(&self) -> bool {
         let (mx, my) = (i64::from(self.scene.mx), i64::from(self.scene.my));
         self.has_room() || mx <= 0 || my <= 0 || mx * my > i64::from(i32::MAX)
     }
 
-    /// Coefficients of the half-space, of which some become any number.
+    /// Coefficients of the half-space, some of which become any number.
     fn set_table(&mut self, bytes: &mut Bytes<'_>) {
         let (cx, cy) = (self.scene.mx.clamp(1, 16), self.scene.my.clamp(1, 16));
         self.table = vec![0.0; (4 * cx * cy) as usize];
@@ -143,7 +143,7 @@ impl Call {
         self.scene.influence = &raw const self.influence;
     }
 
-    /// The other effects: none, one or two of them, of usual values or any. Read last: so bytes that are older than this name none.
+    /// The other effects: none, one or two of them, with usual values or any. They are read last, so that older, shorter bytes name none.
     fn set_effects(&mut self, bytes: &mut Bytes<'_>) {
         let named = bytes.byte();
         let n = self.h.len();
@@ -174,7 +174,7 @@ impl Call {
             (self.structs.period.x, self.structs.period.y) = (bytes.integer(2), bytes.integer(2));
             self.effects.period = Some((self.structs.period.x != 0, self.structs.period.y != 0));
             scene.period = &raw const self.structs.period;
-            // The oracle sums waves until they fade: as many as elements are slender. (Slender periods: tests/problems/coefficients.rs.)
+            // The number of waves of the oracle grows with the slenderness. (Slender periods: tests/problems/coefficients.rs.)
             let slender = scene.dx / scene.dy;
             if slender.is_finite() && !(1e-2..1e2).contains(&slender) {
                 scene.dy = scene.dx;
@@ -187,7 +187,7 @@ impl Call {
         }
     }
 
-    /// Rows of the half-space's coefficients, of which some become any number.
+    /// Rows of the half-space's coefficients, some of which become any number.
     fn set_row_tables(&mut self, bytes: &mut Bytes<'_>) {
         let (cx, my) = (self.scene.mx as usize, self.scene.my as usize);
         let quadrant = crate::half_space::free(cx + 1, my, 0.5, 0.25, 0.2);
@@ -200,7 +200,7 @@ impl Call {
         self.effects.row_tables = Some(OwnCoefficients { cx, cy: my, values });
     }
 
-    /// What a call may write, as bits.
+    /// All outputs of a call, as bits.
     pub fn outputs(&self) -> Vec<u64> {
         let numbers = self.pressure.iter().chain(&self.displacement).chain(&self.distance).map(|value| value.to_bits());
         let report = [self.report.normal.force.to_bits(), self.report.statistics.cycles as u64];
@@ -208,7 +208,7 @@ impl Call {
         numbers.chain(self.contact.iter().map(|&c| c as u64)).chain(report).chain(sliding).collect()
     }
 
-    /// What holds after a call.
+    /// The checks after a call.
     pub fn check(&self, status: i32, before: &[u64], fixed: &[i32]) {
         // SAFETY: never NULL, valid until the next call.
         let message = unsafe { CStr::from_ptr(contact_normal_last_error()) }.to_str().expect("UTF-8");
@@ -223,7 +223,7 @@ impl Call {
         let (case, mut found) = (self.case(fixed), self.found(status));
         if let Some(fixed) = &case.how.fixed {
             assert!(found.contact == *fixed, "a fixed area was written");
-            // Whatever codes it has, what has a surface is in contact.
+            // With any code other than 0 an element with a surface is in contact.
             let in_contact = fixed.iter().zip(&case.h).map(|(code, h)| i32::from(*code != 0 && h.is_finite()));
             found.contact = in_contact.collect();
         }
@@ -234,7 +234,7 @@ impl Call {
         };
         let Case { grid, shear_modulus, poisson_ratio, h, load, .. } = case.clone();
         let place = Place { surface: "bytes".into(), h, load, ..Place::new(grid, shear_modulus, poisson_ratio) };
-        // Tractions of unlike bodies displace along the normal, which the oracle of the normal problem does not know.
+        // For unlike bodies the oracle of the normal problem lacks the displacements by tractions.
         if place.is_alike() {
             let failures = is_true(&case, &found);
             assert!(failures.is_empty(), "friction, status {status}: {failures:?}");
@@ -249,7 +249,7 @@ impl Call {
     fn case(&self, fixed: &[i32]) -> Case {
         let (scene, options) = (&self.scene, &self.options);
         let grid = Grid { mx: scene.mx as usize, my: scene.my as usize, dx: scene.dx, dy: scene.dy };
-        // One of them is always a number that is read: with no `load` named the other is NaN.
+        // Approach or force is always read. Without a `load` the other is NaN.
         let by_approach = match scene.load {
             CONTACT_NORMAL_PRESCRIBED_UNSET => scene.force.is_nan(),
             load => load == CONTACT_NORMAL_PRESCRIBED_APPROACH,
@@ -259,7 +259,7 @@ impl Call {
         let how = How {
             method: options.method,
             smoother: self.cycle.smoother,
-            // A discretisation error that is met instead of the tolerance is judged as an update is: by 1e-2.
+            // If an error ratio ends the solve instead of the tolerance, the residual is judged as for updates: by 1e-2.
             criterion: if options.error_ratio > 0.0 { CONTACT_NORMAL_CRITERION_UPDATE } else { options.criterion },
             tolerance: options.tolerance,
             precision: options.precision,
@@ -287,7 +287,7 @@ impl Call {
         }
     }
 
-    /// What was returned.
+    /// The outputs of the call.
     fn found(&self, status: i32) -> Outputs {
         let n = (self.scene.mx * self.scene.my) as usize;
         Outputs {

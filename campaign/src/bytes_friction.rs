@@ -1,4 +1,4 @@
-//! Friction from random bytes: every motion, forces, own tables, tractions before, like and unlike bodies; and what holds of an answer.
+//! Friction from random bytes: every motion, forces, own tables, previous tractions, like and unlike bodies; and the checks of a result.
 
 use std::ptr::null;
 
@@ -14,18 +14,18 @@ use crate::grid::Grid;
 use crate::init::initialised;
 use crate::slide::Slide;
 
-/// A pair of arrays, in x and in y.
+/// A pair of arrays, one for x and one for y.
 type Pair = [Vec<f64>; 2];
 
-/// Everything that a call with friction reads or writes beside the normal problem's.
+/// The inputs and outputs of a call with friction, other than those of the normal problem.
 pub struct Sliding {
     mu: Vec<f64>,
     previous: Option<Pair>,
     rigid: Option<Pair>,
-    /// xx, yy, xy, xz, yz.
+    /// The tables xx, yy, xy, xz, yz.
     tables: Vec<Vec<f64>>,
     own: Vec<contact_normal_influence>,
-    /// Whether the oracle's coefficients and slip are those of the call.
+    /// Whether the oracle has the coefficients and the slip of the call.
     certified: bool,
     pub input: contact_normal_friction,
     traction: Pair,
@@ -33,7 +33,7 @@ pub struct Sliding {
     stick_slip: Vec<i32>,
 }
 
-/// Numbers for a grid of n elements, of which some are any.
+/// Numbers for a grid of n elements, some of which may be any number.
 fn numbers(bytes: &mut Bytes<'_>, n: usize, size: f64) -> Vec<f64> {
     let usual = |bytes: &mut Bytes<'_>| size * (f64::from(bytes.byte()) / 128.0 - 1.0);
     let mut values: Vec<f64> = (0..ROOM).map(|i| if i < n { usual(bytes) } else { 0.0 }).collect();
@@ -50,13 +50,13 @@ fn pair(bytes: &mut Bytes<'_>, n: usize, named: bool) -> Option<Pair> {
     })
 }
 
-/// One of the tables, as friction takes it.
+/// A table as a struct of friction.
 fn own_table((cx, cy): (i32, i32), coefficients: &[f64], scale: f64) -> contact_normal_influence {
     contact_normal_influence { cx, cy, coefficients: coefficients.as_ptr(), scale, ..Default::default() }
 }
 
 impl Sliding {
-    /// Friction of the scene's grid of n elements; `scene` gets bodies that are alike, mostly.
+    /// Friction for the scene's grid of n elements. In most cases `scene` gets like bodies.
     pub fn new(bytes: &mut Bytes<'_>, n: usize, scene: &mut contact_normal_scene) -> Sliding {
         if bytes.byte() % 4 != 0 {
             scene.shear_modulus[1] = scene.shear_modulus[0];
@@ -86,7 +86,7 @@ impl Sliding {
         }
         (input.previous_traction, input.rigid_slip) = (pointers(&sliding.previous), pointers(&sliding.rigid));
         if bytes.byte() == 99 {
-            // One array of two.
+            // Only one of the two arrays.
             input.previous_traction[1] = null();
         }
         if bytes.byte() == 99 {
@@ -117,12 +117,12 @@ impl Sliding {
         input.continues = i32::from(bytes.byte() % 8 == 0);
         input.sensitivities = i32::from(bytes.byte() % 8 == 0);
         input.reserved = i32::from(bytes.byte() == 99);
-        // The oracle's slip is that of the default offset; the tractions that a handle holds are not kept here.
+        // The oracle has the slip of the default offset, and does not keep the tractions of a handle.
         let default: contact_normal_friction = initialised(contact_normal_friction_init);
         self.certified = input.spin_offset.to_bits() == default.spin_offset.to_bits() && input.continues == 0;
     }
 
-    /// The tables of the half-space, of which some entries become any number.
+    /// The tables of the half-space, some entries of which become any number.
     fn set_tables(&mut self, bytes: &mut Bytes<'_>, scene: &contact_normal_scene) {
         let (cx, cy) = (scene.mx + 1 + bytes.integer(2).clamp(0, 2), scene.my + 1);
         let grid = Grid { mx: cx as usize, my: cy as usize, dx: scene.dx, dy: scene.dy };
@@ -137,7 +137,7 @@ impl Sliding {
         let scale = bytes.sometimes(1.0);
         self.certified &= scale.to_bits() == 1.0f64.to_bits();
         if bytes.byte() % 8 == 0 {
-            // Of unlike bodies: here of no coupling.
+            // The tables of the coupling of unlike bodies: here 0.
             self.tables.extend([vec![0.0; self.tables[0].len()], vec![0.0; self.tables[0].len()]]);
         }
         self.own = self.tables.iter().map(|table| own_table((cx, cy), table, scale)).collect();
@@ -147,20 +147,20 @@ impl Sliding {
         }
     }
 
-    /// The arrays that are to be written.
+    /// Points the fields to the arrays of this struct.
     pub fn point_from(&mut self, fields: &mut contact_normal_fields) {
         fields.traction = [0, 1].map(|k: usize| self.traction[k].as_mut_ptr());
         fields.slip = [0, 1].map(|k: usize| self.slip[k].as_mut_ptr());
         fields.stick_slip = self.stick_slip.as_mut_ptr();
     }
 
-    /// What a call may write, as bits.
+    /// All outputs of a call, as bits.
     pub fn outputs(&self) -> impl Iterator<Item = u64> + '_ {
         let numbers = self.traction.iter().chain(&self.slip).flatten().map(|value| value.to_bits());
         numbers.chain(self.stick_slip.iter().map(|&a| a as u64))
     }
 
-    /// What does not hold of an answer: place, pressures and displacements are those of the call.
+    /// The violated conditions of a result; place, pressures and displacements are those of the call.
     pub fn failures(
         &self,
         place: Place,
@@ -201,7 +201,7 @@ impl Sliding {
             written: true,
         };
         let case = Case { place, slide, stop, carried: 0.0 };
-        // Own tables of unlike bodies couple nothing here; an area that is fixed may pull.
+        // Own tables have no coupling of unlike bodies; a fixed area may be in tension.
         let couples = !case.place.is_alike();
         let certified = self.certified && !(couples && (!self.tables.is_empty() || p.iter().any(|p| *p < 0.0)));
         let verdict = answer(&case, &found, certified);

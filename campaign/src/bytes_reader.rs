@@ -1,23 +1,23 @@
-//! Random bytes as numbers, and what arrays hold before a call.
+//! Random bytes as numbers, and the contents of arrays before a call.
 
-/// Arrays have room for so many elements.
+/// The number of elements for which arrays have room.
 pub const ROOM: usize = 256;
-/// What outputs hold before a call.
+/// The value of outputs before a call.
 pub const SENTINEL: f64 = -12345.678;
 pub const SENTINEL_CONTACT: i32 = -77;
 
-/// What the bytes become beside a scene and options.
+/// The target of the bytes, in addition to a scene and options.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Target {
-    /// Effects that the bytes name, friction among them.
+    /// Effects that the bytes name, possibly with friction.
     Scene,
-    /// A table of coefficients, too.
+    /// A table of coefficients as well.
     Table,
-    /// Friction, whatever the bytes.
+    /// Friction in any case.
     Friction,
 }
 
-/// Bytes, read one value after the other; zeros when there are no more.
+/// Bytes, read one value after the other, followed by zeros.
 pub struct Bytes<'a> {
     data: &'a [u8],
 }
@@ -37,7 +37,7 @@ impl Bytes<'_> {
         (0..8).fold(0, |word, _| word << 8 | u64::from(self.byte()))
     }
 
-    /// A usual number, or any bits at all.
+    /// A usual number, or any bits.
     pub fn number(&mut self) -> f64 {
         match self.byte() {
             0 => f64::from_bits(self.word()),
@@ -48,7 +48,7 @@ impl Bytes<'_> {
         }
     }
 
-    /// `usual`, or a number.
+    /// Mostly `usual`, otherwise any number.
     pub fn sometimes(&mut self, usual: f64) -> f64 {
         if self.byte() % 16 == 1 {
             self.number()
@@ -57,7 +57,7 @@ impl Bytes<'_> {
         }
     }
 
-    /// Mostly below `limit`; now and then any integer at all.
+    /// Mostly below `limit`, now and then any integer.
     pub fn integer(&mut self, limit: u8) -> i32 {
         match self.byte() {
             255 => self.word() as i32,
@@ -65,7 +65,7 @@ impl Bytes<'_> {
         }
     }
 
-    /// A size that keeps to the room, or one that no grid has.
+    /// A size within the room, or one that no grid has.
     pub fn size(&mut self) -> i32 {
         match self.byte() {
             255 => [0, -1, i32::MIN, i32::MAX, 65536][usize::from(self.byte() % 5)],

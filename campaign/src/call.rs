@@ -11,7 +11,7 @@ use crate::effects::OwnCoefficients;
 use crate::grid::{Grid, Load};
 use crate::init::initialised;
 
-/// What outputs hold before a call.
+/// The value of outputs before a call.
 pub const SENTINEL: f64 = -12345.678;
 const SENTINEL_CONTACT: i32 = -77;
 
@@ -22,7 +22,7 @@ struct Scene {
     _effects: Box<EffectStructs>,
 }
 
-/// Bodies of these shear moduli and Poisson ratios, and what presses them together; no effect.
+/// Bodies with these shear moduli and Poisson ratios, and a load, without effects.
 pub fn bare_scene(grid: &Grid, h: &[f64], (moduli, ratios): ([f64; 2], [f64; 2]), load: Load) -> contact_normal_scene {
     let mut scene = initialised(contact_normal_scene_init);
     (scene.mx, scene.my) = (grid.mx as i32, grid.my as i32);
@@ -45,15 +45,15 @@ impl Scene {
     }
 }
 
-/// Cancels once, in a given call of it.
+/// Cancels once, at a given call of the callback.
 pub struct Canceller {
     pub calls: u32,
-    /// Which one; 0: never.
+    /// The number of this call; 0: never.
     pub at: u32,
 }
 
 impl Canceller {
-    /// Calls after the one that cancelled, if one did: there must be none.
+    /// The number of calls after the cancelling one, if one cancelled: it must be 0.
     pub fn overrun(&self) -> Option<u32> {
         (self.at > 0).then(|| self.calls.checked_sub(self.at)).flatten()
     }
@@ -100,7 +100,7 @@ fn options(
     options
 }
 
-/// What a call returned.
+/// The results of a call.
 pub struct Outputs {
     pub status: i32,
     pub message: String,
@@ -109,14 +109,14 @@ pub struct Outputs {
     pub e: Vec<f64>,
     pub contact: Vec<i32>,
     pub report: contact_normal_report,
-    /// Callbacks after the one that cancelled, if one did.
+    /// The number of callbacks after the one that cancelled, if one did.
     pub overrun: Option<u32>,
-    /// Whether something was written.
+    /// Whether the call wrote any output.
     pub written: bool,
 }
 
 impl Outputs {
-    /// Bits that have to be the same where the same is asked for twice.
+    /// The bits that must be equal for equal calls.
     pub fn bits(&self) -> Vec<u64> {
         let numbers = self.p.iter().chain(&self.u).chain(&self.e).map(|value| value.to_bits());
         let counts = [self.report.normal.approach.to_bits(), self.report.statistics.cycles as u64, self.status as u64];
@@ -124,12 +124,12 @@ impl Outputs {
     }
 }
 
-/// Arrays full of sentinels, with what is read from them.
+/// Arrays filled with sentinels, and the inputs among them.
 fn outputs(case: &Case) -> (Outputs, contact_normal_fields) {
     let n = case.grid.len();
     let given = case.how.given.clone();
     let fixed = case.how.fixed.clone();
-    // With a guess the area is read too.
+    // With a guess the contact area is read as well.
     let of_guess = |p: &Vec<f64>| p.iter().map(|&p| i32::from(p > 0.0)).collect();
     let contact = fixed.or_else(|| given.as_ref().map(of_guess)).unwrap_or_else(|| vec![SENTINEL_CONTACT; n]);
     let mut outputs = Outputs {
@@ -150,7 +150,7 @@ fn outputs(case: &Case) -> (Outputs, contact_normal_fields) {
     (outputs, fields)
 }
 
-/// A handle of the library's.
+/// A handle of the library.
 pub struct Handle(*mut contact_normal_solver);
 
 impl Drop for Handle {
@@ -160,14 +160,14 @@ impl Drop for Handle {
     }
 }
 
-/// What the last call that was refused said.
+/// The message of the last refused call.
 pub fn last_error() -> String {
     // SAFETY: never NULL, valid until the next call.
     unsafe { CStr::from_ptr(contact_normal_last_error()) }.to_string_lossy().into_owned()
 }
 
 impl Handle {
-    /// Set up for a case, or the status and why not.
+    /// A handle for a case, or the status and the message.
     pub fn new(case: &Case) -> Result<Handle, (i32, String)> {
         let mut canceller = Canceller { calls: 0, at: 0 };
         let cycle = cycle(&case.how);
@@ -189,7 +189,7 @@ impl Handle {
         })
     }
 
-    /// A p.
+    /// The product A p.
     pub fn product(&mut self, p: &[f64]) -> Vec<f64> {
         let mut u = vec![SENTINEL; p.len()];
         // SAFETY: as many values as the grid has elements.
@@ -198,7 +198,7 @@ impl Handle {
         u
     }
 
-    /// Sets other coefficients: the status.
+    /// Sets other coefficients; returns the status.
     pub fn set_influence(&mut self, own: &OwnCoefficients) -> i32 {
         let mut influence = initialised(contact_normal_influence_init);
         (influence.cx, influence.cy, influence.coefficients) = (own.cx as i32, own.cy as i32, own.values.as_ptr());
@@ -206,7 +206,7 @@ impl Handle {
         unsafe { contact_normal_solver_set_influence(self.0, &influence, std::ptr::null()) }
     }
 
-    /// Solves cases that differ in surface and load only, in one call: its status, and what came of each.
+    /// Solves cases that differ in surface and load only, in one call; returns its status and the results.
     pub fn solve_batch(&mut self, cases: &[Case]) -> (i32, Vec<Outputs>) {
         let mut canceller = Canceller { calls: 0, at: 0 };
         let cycle = cycle(&cases[0].how);
@@ -241,7 +241,7 @@ impl Handle {
         (status, outputs)
     }
 
-    /// The pressures that it holds, if it says that it does.
+    /// The pressures that the handle holds, or None.
     pub fn pressures(&self, n: usize) -> Option<Vec<f64>> {
         let mut p = vec![SENTINEL; n];
         let mut fields = initialised(contact_normal_fields_init);
@@ -252,7 +252,7 @@ impl Handle {
     }
 }
 
-/// A step of bodies that relax, on a handle that the first one makes.
+/// A step of viscoelastic bodies, on a handle that the first step makes.
 pub fn step(handle: &mut Option<Handle>, case: &Case, visco: &contact_normal_visco) -> Outputs {
     run(case, false, |scene, options, fields, report| {
         // SAFETY (all): structs with the arrays that they declare, and a handle that no one else uses.
@@ -272,7 +272,7 @@ pub fn step(handle: &mut Option<Handle>, case: &Case, visco: &contact_normal_vis
     })
 }
 
-/// Solves a case on its own.
+/// Solves a case without a handle.
 pub fn solve(case: &Case) -> Outputs {
     run(case, false, |scene, options, fields, report| {
         // SAFETY: structs with the arrays that they declare.

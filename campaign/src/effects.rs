@@ -21,7 +21,7 @@ impl Values {
     }
 }
 
-/// Patches and the factors between them.
+/// Patches, and the factors between them.
 #[derive(Clone, Debug)]
 pub struct Patches {
     pub count: usize,
@@ -36,16 +36,16 @@ impl Patches {
     }
 }
 
-/// Own coefficients, as the C ABI has them.
+/// Own coefficients, as in the C ABI.
 #[derive(Clone, Debug)]
 pub struct OwnCoefficients {
     pub cx: usize,
-    /// Rows of offsets to either side (a table), or rows of the grid (row tables).
+    /// Rows of offsets on either side (a table), or rows of the grid (row tables).
     pub cy: usize,
     pub values: Vec<f64>,
 }
 
-/// What a scene names beside bodies, surface and load.
+/// The effects of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Effects {
     pub layer: Option<Values>,
@@ -57,12 +57,12 @@ pub struct Effects {
     pub coating: Option<Coating>,
     /// Own coefficients that are not symmetric.
     pub unsymmetric: bool,
-    /// Coefficients of no elastic body: nothing is promised but that the status is true.
+    /// Coefficients of no elastic body: the only promise is that the status is true.
     pub indefinite: bool,
 }
 
 impl Effects {
-    /// "layer, period xy", or "plain".
+    /// The names of the effects, as "layer, period xy", or "plain".
     pub fn name(&self) -> String {
         let per_element = |values: &Option<Values>, one: &'static str, each: &'static str| match values {
             Some(Values::Uniform(_)) => Some(one),
@@ -100,7 +100,7 @@ impl Effects {
         }
     }
 
-    /// Pairs that this version says it does not solve (docs/effects.md).
+    /// Whether the effects contain a pair that this version does not solve (docs/effects.md).
     pub fn is_unsupported_pair(&self) -> bool {
         let own = self.influence.is_some() || self.row_tables.is_some();
         self.period.is_some() && (own || self.patches.is_some())
@@ -115,7 +115,7 @@ impl Effects {
     }
 }
 
-/// Which effects a scene names.
+/// The kinds of effects that a scene names.
 #[derive(Clone, Debug, Default)]
 pub struct Kinds {
     pub layer: bool,
@@ -126,7 +126,7 @@ pub struct Kinds {
     pub row_tables: bool,
 }
 
-/// None, one or two.
+/// No effect, one or two.
 pub fn kinds(random: &mut Random) -> Kinds {
     let mut kinds = Kinds::default();
     for _ in 0..random.pick(&[0, 0, 1, 1, 2, 2]) {
@@ -142,7 +142,7 @@ pub fn kinds(random: &mut Random) -> Kinds {
     kinds
 }
 
-/// Random effects of these kinds, but for the limit, which belongs to the load. `c`: the compliance over pi.
+/// Random effects of these kinds, without the limit, which belongs to the load. `c` is the compliance over pi.
 pub fn make(random: &mut Random, kinds: &Kinds, grid: &Grid, c: f64) -> Effects {
     let mut effects = Effects { period: kinds.period, ..Effects::default() };
     let quality = random.uniform();
@@ -158,7 +158,7 @@ pub fn make(random: &mut Random, kinds: &Kinds, grid: &Grid, c: f64) -> Effects 
     effects
 }
 
-/// A compliance, in self-influences; now and then 0.
+/// A compliance in units of the self-influence; now and then 0.
 pub fn layer(random: &mut Random, grid: &Grid, own: f64) -> Values {
     let size = own * random.decades(1e-3, 1e3);
     if random.chance(0.5) {
@@ -189,7 +189,7 @@ pub fn patches(random: &mut Random, grid: &Grid) -> Patches {
     Patches { count, patch, factors: factors.collect() }
 }
 
-/// Sums of what is positive definite (the half-space, a foundation), and what breaks that.
+/// Sums of positive definite coefficients (the half-space, a foundation), or others that are not.
 pub fn table(random: &mut Random, grid: &Grid, c: f64, (unsymmetric, indefinite): (bool, bool)) -> OwnCoefficients {
     let (cx, cy) = (grid.mx + random.pick(&[0, 0, 1, 7]), grid.my + random.pick(&[0, 0, 2]));
     let half_space = free(cx + 1, cy + 1, grid.dx, grid.dy, c);
@@ -213,7 +213,7 @@ pub fn table(random: &mut Random, grid: &Grid, c: f64, (unsymmetric, indefinite)
     OwnCoefficients { cx, cy, values }
 }
 
-/// `d_iy d_jy c(kx, iy - jy)`: positive definite, and not where one of the two is left out.
+/// `d_iy d_jy c(kx, iy - jy)`: positive definite; with one of the two factors only it is not symmetric.
 pub fn row_tables(
     random: &mut Random,
     grid: &Grid,

@@ -1,8 +1,8 @@
-//! Flash temperatures: of the heat of friction in a random scene, between bodies that move at random speeds, against direct sums.
+//! Flash temperatures: by the heat of friction in a random scene, between bodies with random speeds, compared with direct sums.
 //!
-//! A point source on a half-space that moves past it heats by `exp(-p (r - x))/(2 pi lambda r)`, x downstream, `p = V/(2 kappa)`. Over an element that is a sum over
-//! its edges, seen from the place that is heated: along a ray at a distance r the integral is `r (1 - exp(-z))/z`, `z = p (r - x)`, and with d the distance of an
-//! edge's line and `d sinh t` the place on it
+//! A moving point source heats a half-space by `exp(-p (r - x))/(2 pi lambda r)`, with x downstream and `p = V/(2 kappa)`. For an element this
+//! becomes a sum over its edges, as seen from the heated place. Along a ray of length r the integral is `r (1 - exp(-z))/z`, `z = p (r - x)`. With d
+//! the distance of an edge's line, and `d sinh t` the place on it,
 //!
 //! ```text
 //! 2 pi lambda T = sum over edges of d integral of (1 - exp(-z))/z dt,    r = d cosh t
@@ -18,28 +18,28 @@ use crate::init::initialised;
 use crate::random::Random;
 use crate::verdict::Verdict;
 
-/// A panel in t has at most this length, at most twice the length of the one before, and so many nodes. It integrates (1 - exp(-z))/z to 1e-12, while z
-/// changes by a factor of e to four.
+/// The greatest length of a panel in t; panels are at most twice as long as the one before. With the nodes of the rule they integrate (1 - exp(-z))/z
+/// to 1e-12, while z changes by a factor of e to four.
 const PANEL: f64 = 1.0;
 const NODES: usize = 12;
-/// What both quadratures may be off, over the largest rise: what the library says of its own.
+/// The error of both quadratures, relative to the largest rise: that of the library as documented.
 const ACCURACY: f64 = 1e-9;
 
-/// lambda T at (x, y) downstream of and beside the centre of an element, by a unit flux.
+/// lambda T at (x, y), downstream of and beside the centre of an element, for a unit flux.
 fn of_element((x, y): (f64, f64), (dx, dy): (f64, f64), p: f64, rule: &[(f64, f64)]) -> f64 {
-    // The source seen from the place: x is `from` a source that lies upstream by that.
+    // The element as seen from the place: a source at x is upstream by x.
     let ((left, right), (low, high)) = ((x - 0.5 * dx, x + 0.5 * dx), (y - 0.5 * dy, y + 0.5 * dy));
-    // Edges (distance of the line, its ends along the line), counterclockwise, and x of a place `along` them.
+    // Edges (distance of the line, its ends along the line), counterclockwise, and x at a place `along` them.
     let across = |at: f64, ends: (f64, f64)| edge((at, ends), |_| at, p, rule);
     let beside = |at: f64, ends: (f64, f64)| edge((at, ends), |along| along, p, rule);
     (across(right, (low, high)) - across(left, (low, high)) + beside(high, (left, right)) - beside(low, (left, right)))
         / (2.0 * PI)
 }
 
-/// Of the triangle between the place and an edge; `at` may be negative.
+/// The integral over the triangle between the place and an edge; `at` may be negative.
 fn edge((at, (from, to)): (f64, (f64, f64)), x: impl Fn(f64) -> f64, p: f64, rule: &[(f64, f64)]) -> f64 {
     let d = at.abs();
-    // A place on the line sees no triangle.
+    // For a place on the line the triangle is empty.
     if d == 0.0 {
         return 0.0;
     }
@@ -52,7 +52,7 @@ fn edge((at, (from, to)): (f64, (f64, f64)), x: impl Fn(f64) -> f64, p: f64, rul
             1.0 - 0.5 * z
         }
     };
-    // Straight behind a fast source it has a peak as wide as sqrt(2/(p d)).
+    // Straight behind a fast source the integrand has a peak of width sqrt(2/(p d)).
     let narrowest = (2.0 / (p * d)).sqrt().clamp(1e-9, PANEL);
     let (mut ends, mut end) = (vec![from, to, 0.0], narrowest);
     while end < from.abs().max(to.abs()) {
@@ -68,7 +68,7 @@ fn edge((at, (from, to)): (f64, (f64, f64)), x: impl Fn(f64) -> f64, p: f64, rul
     at * ends.windows(2).map(of_panel).sum::<f64>()
 }
 
-/// Bodies, speeds and a share, at random; temperatures where it is warmest, and somewhere.
+/// Random bodies, speeds and a share; checks temperatures at the warmest place and at another one.
 pub fn check(random: &mut Random, grid: &Grid, flux: &[f64]) -> Verdict {
     let n = grid.len();
     let mut verdict = Verdict::default();
@@ -127,7 +127,7 @@ pub fn check(random: &mut Random, grid: &Grid, flux: &[f64]) -> Verdict {
 mod tests {
     use super::*;
 
-    /// By Gauss points on an element that the place is beside, ahead of and behind; and without motion Love's integral in its middle.
+    /// Compared with Gauss points on an element, at places beside, ahead and behind; without motion with Love's integral in its middle.
     #[test]
     fn edges_add_up_to_elements() {
         let (rule, fine) = (gauss(NODES), gauss(40));

@@ -21,12 +21,12 @@ struct Scene {
     _tables: Option<Box<Structs>>,
 }
 
-/// Where tractions before a step come from.
+/// The source of the tractions before a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum From {
-    /// Those of the slide, or none.
+    /// The tractions of the slide, or none.
     Slide,
-    /// Those that the handle holds.
+    /// The tractions that the handle holds.
     Handle,
 }
 
@@ -77,7 +77,7 @@ fn options(stop: &Stop, canceller: &mut Canceller) -> contact_normal_options {
     options
 }
 
-/// Arrays full of sentinels: p, u, e, q, slip, and what each element is.
+/// Arrays filled with sentinels: p, u, e, q, slip, and the state of each element.
 struct Arrays {
     numbers: Vec<Vec<f64>>,
     integers: [Vec<i32>; 2],
@@ -117,7 +117,7 @@ impl Arrays {
     }
 }
 
-/// One call, with outputs full of sentinels.
+/// Makes one call, with outputs filled with sentinels.
 fn run(
     (place, slide, stop): (&Place, Option<(&Slide, From)>, &Stop),
     call: impl FnOnce(
@@ -135,7 +135,7 @@ fn run(
     arrays.found(status, canceller.overrun())
 }
 
-/// The same without friction.
+/// Solves without friction.
 pub fn frictionless(place: &Place, stop: &Stop) -> Found {
     run((place, None, stop), |scene, options, fields, report| {
         // SAFETY: structs with the arrays that they declare.
@@ -143,7 +143,7 @@ pub fn frictionless(place: &Place, stop: &Stop) -> Found {
     })
 }
 
-/// Solves on its own.
+/// Solves without a handle.
 pub fn call(place: &Place, slide: &Slide, stop: &Stop) -> Found {
     run((place, Some((slide, From::Slide)), stop), |scene, options, fields, report| {
         // SAFETY: structs with the arrays that they declare.
@@ -151,7 +151,7 @@ pub fn call(place: &Place, slide: &Slide, stop: &Stop) -> Found {
     })
 }
 
-/// Solves on its own or by a handle, with what `change` makes of the friction.
+/// Solves without or with a handle, with friction changed by `change`.
 pub fn call_changed(
     handle: Option<&mut Handle>,
     (place, slide, from): (&Place, &Slide, From),
@@ -177,7 +177,7 @@ pub fn call_changed(
     })
 }
 
-/// The tangential problem of pressures that are given.
+/// Solves the tangential problem for given pressures.
 pub fn tangential(place: &Place, slide: &Slide, stop: &Stop, p: &[f64]) -> Found {
     run((place, Some((slide, From::Slide)), stop), |scene, options, fields, report| {
         // SAFETY: the struct of this call.
@@ -203,7 +203,7 @@ pub fn tangential(place: &Place, slide: &Slide, stop: &Stop, p: &[f64]) -> Found
     })
 }
 
-/// A handle of the library's.
+/// A handle of the library.
 pub struct Handle(*mut contact_normal_solver);
 
 impl Drop for Handle {
@@ -214,10 +214,10 @@ impl Drop for Handle {
 }
 
 impl Handle {
-    /// Set up for a place, or the status and why not.
+    /// A handle for a place, or the status and the message.
     pub fn new(place: &Place, stop: &Stop) -> Result<Handle, (i32, String)> {
         let mut canceller = Canceller { calls: 0, at: 0 };
-        // Tables belong to what a handle is set up with.
+        // Tables belong to the set-up of a handle.
         let nothing = place.own.as_ref().map(|own| Slide::nothing(&own.kind, place.grid.len()));
         let slide = nothing.as_ref().map(|slide| (slide, From::Slide));
         let (scene, options) = (scene(place, slide), options(stop, &mut canceller));
@@ -238,7 +238,7 @@ impl Handle {
         })
     }
 
-    /// What the handle holds: a `Found` without a report.
+    /// The fields that the handle holds: a `Found` without a report.
     pub fn fields(&self, n: usize) -> Found {
         let mut arrays = Arrays::new(n);
         let mut fields = arrays.fields();
@@ -247,7 +247,7 @@ impl Handle {
         arrays.found(status, None)
     }
 
-    /// Solves places with one slide in one call: its status, and what came of each.
+    /// Solves places with one slide in one call; returns its status and the results.
     pub fn solve_batch(&mut self, places: &[Place], slide: (&Slide, From), stop: &Stop) -> (i32, Vec<Found>) {
         let mut canceller = Canceller { calls: 0, at: 0 };
         let options = options(stop, &mut canceller);

@@ -1,4 +1,4 @@
-//! A random case with friction: bodies pressed together, how they slide, and when the solve stops.
+//! A random case with friction: the bodies and their load, their motion, and the stopping rule.
 
 use contact_normal::ffi::*;
 
@@ -9,7 +9,7 @@ use crate::random::Random;
 use crate::rules;
 use crate::slide::Slide;
 
-/// A case.
+/// A case with friction.
 #[derive(Clone)]
 pub struct Case {
     pub place: Place,
@@ -19,7 +19,7 @@ pub struct Case {
     pub carried: f64,
 }
 
-/// mu of the elements, and what motions go by: extremes do not say what moves.
+/// mu of the elements, and a usual mu for the scale of motions.
 fn coefficients(random: &mut Random, n: usize, is_roller: bool) -> (Vec<f64>, bool, f64) {
     let mu = match random.uniform() {
         u if is_roller && u < 0.5 => random.decades(1e-6, 0.01),
@@ -38,7 +38,7 @@ fn coefficients(random: &mut Random, n: usize, is_roller: bool) -> (Vec<f64>, bo
     ((0..n).map(|_| value(random)).collect(), false, usual)
 }
 
-/// A force over what friction carries: nothing, next to nothing, some of it, nearly all, more. Tractions of unlike bodies change that by some hundredths.
+/// A force relative to the friction bound: 0, nearly 0, a part, nearly all, more. For unlike bodies tractions change the bound by some hundredths.
 fn part_of_friction(random: &mut Random) -> f64 {
     match random.uniform() {
         u if u < 0.02 => random.between(0.99, 1.02),
@@ -50,7 +50,7 @@ fn part_of_friction(random: &mut Random) -> f64 {
     }
 }
 
-/// A step in elements: the last tenth of 0.3 to 3 stands for 3 to 1e5, in the longer direction.
+/// A step in units of the longer side of an element: values from 2.9 to 3 become whole numbers from 3 to 1e5.
 fn step(length: f64) -> f64 {
     let beyond = (length - 2.9) / 0.1;
     if beyond > 0.0 {
@@ -61,7 +61,7 @@ fn step(length: f64) -> f64 {
 }
 
 impl Case {
-    /// A motion or forces of the size that the bodies' pressures suggest.
+    /// Creepages or forces of the order that the bodies' pressures suggest.
     pub fn random(random: &mut Random, place: Place, without: &Found) -> Case {
         let (grid, n) = (place.grid, place.grid.len());
         let is_roller = place.surface == "roller";
@@ -105,7 +105,7 @@ impl Case {
             distance: if is_roller || random.chance(0.6) {
                 0.0
             } else {
-                // The oracle of coatings is a table along the distance; more than a million elements are refused.
+                // The oracle of coatings has a table along the distance, of limited length.
                 let longest = if place.effects.coating.is_some() { 30.0 } else { f64::INFINITY };
                 let elements = step(random.between(0.3, 3.0)).min(longest);
                 (grid.dx.max(grid.dy) * elements).min(1e6 * grid.dx.min(grid.dy))
@@ -133,19 +133,19 @@ impl Case {
         Case { place, slide, stop, carried: normal }
     }
 
-    /// Why the forces may be refused, if they may: any force below mu N is reached by a creepage that is large enough.
+    /// The reason for which the forces may be refused, if there is one: a large enough creepage reaches any force below mu N.
     pub fn may_be_infeasible(&self) -> Option<&'static str> {
         let size = self.slide.force();
         let much = self.has_much_friction();
         match () {
-            // A force of 0 is met where nothing is carried.
+            // A force of 0 is always possible.
             _ if size == 0.0 => None,
             _ if size >= self.carried * (1.0 - 1e-9) => Some("refused: a force of mu N or more"),
-            // N is right to the tolerance.
+            // N has an error of the tolerance.
             _ if size >= self.carried * (1.0 - self.stop.tolerance.max(1e-4)) => {
                 Some("refused: a force of 0.9999 mu N or more")
             }
-            // Tractions change the pressures of unlike bodies: not their sum, where that is given.
+            // Tractions change the pressures of unlike bodies, but not a given force.
             _ if !self.carries_what_is_known() && (size >= 0.8 * self.carried || much) => {
                 Some("refused: a force on unlike bodies whose mu N the tractions change, of 0.8 of it or with mu > 1")
             }
@@ -153,30 +153,30 @@ impl Case {
         }
     }
 
-    /// Whether what the pressures carry is known before the solve.
+    /// Whether mu N is known before the solve.
     pub fn carries_what_is_known(&self) -> bool {
         self.place.is_alike() || matches!(self.place.load, Load::Force(_)) && self.slide.uniform
     }
 
-    /// Whether a step of steady rolling is shorter than a tenth of the elements along it: such a step is refused.
+    /// Whether a step of steady rolling is shorter than a tenth of an element along it: such a step is refused.
     pub fn step_is_too_short(&self) -> bool {
         let grid = &self.place.grid;
         let [x, y] = self.slide.step(grid);
         self.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING && (x / grid.dx).abs().max((y / grid.dy).abs()) < 0.1
     }
 
-    /// Why the normal problem may be refused with this status.
+    /// The reason for which the normal problem may be refused with this status.
     pub fn normal_reason(&self, status: i32) -> Option<&'static str> {
         rules::reason(&self.place.normal(&self.stop, &vec![0.0; self.place.h.len()], 0.0), status)
     }
 
-    /// What the bodies carried before the step: nothing from rest; where tractions are given, the same pressures as now.
+    /// The loads before the step: none from rest; with given tractions the present pressures.
     pub fn before(&self, p: &[f64]) -> Before {
         let p = if self.slide.previous.is_some() { p.to_vec() } else { vec![0.0; p.len()] };
         Before { q: self.slide.before(), p }
     }
 
-    /// What the motion is called.
+    /// The name of the motion.
     pub fn motion(&self) -> &'static str {
         ["shift", "transient rolling", "steady rolling"][self.slide.motion as usize]
     }
@@ -192,18 +192,18 @@ impl Case {
         format!("{}, {bodies} bodies", self.motion())
     }
 
-    /// A line contact of unlike bodies, called with the cycles of the default; not of much friction, with which turns may not settle.
+    /// A line contact of unlike bodies with the default cycles and without much friction, for which turns may not settle.
     pub fn is_slow_line(&self) -> bool {
         let is_line = self.place.grid.mx == 1 || self.place.grid.my == 1;
         is_line && !self.place.is_alike() && self.stop.is_unhindered() && !self.has_much_friction()
     }
 
-    /// Beyond which the turns between the problems of unlike bodies need not settle, by the library's documents.
+    /// Whether the turns between the problems of unlike bodies need not settle, by the library's documentation.
     pub fn has_much_friction(&self) -> bool {
         self.slide.mu.iter().any(|mu| *mu > 1.0)
     }
 
-    /// In one line.
+    /// The case in one line.
     pub fn describe(&self) -> String {
         let Grid { mx, my, dx, dy } = self.place.grid;
         let (slide, stop) = (&self.slide, &self.stop);

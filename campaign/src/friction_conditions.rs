@@ -1,7 +1,7 @@
 //! The conditions of stick and slip and of contact, recomputed by the campaign's own products (`tangential`).
 //!
-//! The slip is `s = w + A q - u'`; of unlike bodies pressures displace sideways, too, and tractions along the normal. What is left of the
-//! slip counts where an element sticks, and where it slips but for what is opposite to q.
+//! The slip is `s = w + A q - u'`. For unlike bodies pressures also have tangential displacements, and tractions displacements along the normal. The
+//! residual is the slip of a sticking element, and that of a slipping element without its part opposite to q.
 
 use contact_normal::ffi::{CONTACT_NORMAL_MOTION_SHIFT, CONTACT_NORMAL_MOTION_STEADY_ROLLING};
 
@@ -12,14 +12,14 @@ use crate::tangential::{Operator, Vector};
 /// Tractions of more than this part of the bound slip, by the library's documents.
 pub const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
 
-/// Lengths are compared with at least this part of those whose difference they are, by the library's documents.
+/// The least scale of lengths relative to the lengths whose difference they are, by the library's documentation.
 const ROUND_OFF: f64 = 1.5e-8;
 
 pub fn length(v: Vector) -> f64 {
     v[0].hypot(v[1])
 }
 
-/// The root of the mean square, whatever the unit.
+/// The root mean square, without overflow or underflow.
 fn rms(lengths: &[f64]) -> f64 {
     let largest = lengths.iter().copied().fold(0.0, f64::max);
     if !(largest > 0.0) {
@@ -28,19 +28,19 @@ fn rms(lengths: &[f64]) -> f64 {
     largest * (lengths.iter().map(|l| (l / largest).powi(2)).sum::<f64>() / lengths.len() as f64).sqrt()
 }
 
-/// What a call left of the conditions, and what it is compared with.
+/// The residuals of the conditions of a call, and their scales.
 pub struct Conditions {
     pub left: f64,
     pub scale: f64,
     pub rounding: f64,
-    /// The largest difference between the slip of the library and this one's.
+    /// The largest difference between the slip of the library and that of the campaign.
     pub slip_error: f64,
-    /// What tractions displace along the normal, and what rounding may do to that.
+    /// Displacements by tractions along the normal, and their possible round-off.
     pub along_normal: Vec<f64>,
     pub normal_rounding: f64,
 }
 
-/// Displacements of a step: by tractions now, by both before, and sideways by pressures.
+/// Displacements of a step: by the present tractions, by the previous loads, and tangential ones by pressures.
 struct Displacements {
     by_q: Vec<[f64; 3]>,
     before: Vec<Vector>,
@@ -108,21 +108,21 @@ pub fn conditions(case: &Case, found: &Found, before: &Before) -> Conditions {
     let or_displacements = match slide.motion {
         CONTACT_NORMAL_MOTION_SHIFT => 1.0,
         CONTACT_NORMAL_MOTION_STEADY_ROLLING if slide.has_forces() => 1.0,
-        // Rolling slowly: what round-off of the displacements leaves.
+        // In slow rolling the scale is the round-off of the displacements.
         _ => ROUND_OFF,
     };
-    // Creepages that are found may cancel the rigid slip: what round-off leaves of it.
+    // With given forces the creepages may cancel the rigid slip: its round-off is then the scale.
     let cancelled = if slide.has_forces() { ROUND_OFF * rms(&without_found) } else { 0.0 };
     let scale = rms(&rigid).max(or_displacements * rms(&displaced)).max(cancelled);
     let along_normal = d.by_q.iter().map(|u| u[2]).collect();
     Conditions { left: rms(&left), scale, rounding, slip_error, along_normal, normal_rounding: d.normal_rounding }
 }
 
-/// Elements of a contact area up to which it is decided whether a problem is monotone.
+/// The largest contact area for which it is decided whether a problem is monotone.
 const MOST: usize = 700;
 
-/// Whether steady rolling is a monotone problem, which has one solution: `B + B'` on C is positive definite, by Cholesky's
-/// factors. It is not where a step is shorter than elements that are long in its direction. Large contact areas count as monotone.
+/// Whether steady rolling is a monotone problem, which has a unique solution: `B + B'` on C is positive definite, by Cholesky's factors. It is not if
+/// a step is shorter than elements that are long in its direction. Large contact areas count as monotone.
 pub fn is_monotone(case: &Case, found: &Found) -> bool {
     let contact: Vec<usize> = (0..found.q.len()).filter(|&i| case.slide.mu[i] * found.p[i] > 0.0).collect();
     if contact.len() > MOST {

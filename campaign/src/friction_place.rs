@@ -1,4 +1,4 @@
-//! Where bodies with friction touch: grid, bodies, surface, load, a layer, a limit of the pressures.
+//! The place of a contact with friction: grid, bodies, surface, load, a layer, a limit of the pressures.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use crate::scales::{self, Scales};
 use crate::surface;
 use crate::tangential_coefficients::{Compliance, Element};
 
-/// The bodies and what presses them together.
+/// The bodies and their load.
 #[derive(Clone, Debug)]
 pub struct Place {
     pub grid: Grid,
@@ -25,13 +25,13 @@ pub struct Place {
     pub surface: String,
     pub h: Vec<f64>,
     pub load: Load,
-    /// A coating of both bodies, a layer and a limit at most.
+    /// At most a coating of both bodies, a layer and a limit.
     pub effects: Effects,
-    /// Tangential coefficients of the caller's own.
+    /// The caller's own tangential coefficients.
     pub own: Option<Arc<OwnTractions>>,
 }
 
-/// Like bodies in most cases, of nu = 0 now and then: without nu shifts start from a smaller load.
+/// In most cases like bodies, now and then with nu = 0, for which shifts start from a smaller load.
 fn bodies(random: &mut Random) -> ([f64; 2], [f64; 2]) {
     let modulus = if random.chance(0.3) { random.decades(1e-6, 1e9) } else { 1.0 };
     let nu = random.between(-0.5, 0.5);
@@ -58,7 +58,7 @@ fn elements(random: &mut Random, unit: f64) -> Grid {
     Grid { mx, my, dx: unit, dy }
 }
 
-/// Larger than those: squares, lines and strips.
+/// Larger grids: squares, lines and strips.
 fn large(random: &mut Random, unit: f64) -> Grid {
     let (mx, my) = match random.uniform() {
         u if u < 0.2 => (random.integer(24, 600), 1),
@@ -66,12 +66,12 @@ fn large(random: &mut Random, unit: f64) -> Grid {
         u if u < 0.9 => (random.integer(10, 50), random.integer(10, 50)),
         _ => (random.integer(50, 100), random.integer(50, 100)),
     };
-    // By numbers of their own: the others stay what they were.
+    // A separate sequence, so that the other random numbers do not change.
     let own = &mut random.beside(0x11e5);
     if my == 1 && own.chance(0.15) {
         return Grid { mx: own.integer(1000, 4000), my, dx: unit, dy: unit * own.decades(1e2, 1e5) };
     }
-    // Rollers: elements as long as the contact is wide, and longer.
+    // Rollers: elements at least as long as the contact is wide.
     if my == 1 && random.chance(0.4) {
         return Grid { mx, my, dx: unit, dy: unit * random.decades(1.0, 5.0 * mx as f64) };
     }
@@ -81,14 +81,14 @@ fn large(random: &mut Random, unit: f64) -> Grid {
 }
 
 impl Place {
-    /// A flat surface that nothing presses.
+    /// A flat surface without a load.
     pub fn new(grid: Grid, shear_modulus: [f64; 2], poisson_ratio: [f64; 2]) -> Place {
         let (surface, h) = ("flat".into(), vec![0.0; grid.len()]);
         let (load, effects) = (Load::Force(0.0), Effects::default());
         Place { grid, shear_modulus, poisson_ratio, surface, h, load, effects, own: None }
     }
 
-    /// A small one, or one of what people bring.
+    /// A small place, or a measured one.
     pub fn random(random: &mut Random, is_measured: bool) -> Place {
         let unit = if random.chance(0.3) { random.decades(1e-6, 1e6) } else { 1.0 };
         let grid = if is_measured { large(random, unit) } else { elements(random, unit) };
@@ -102,9 +102,9 @@ impl Place {
         let (surface, h) = surfaces(random, &grid);
         let height = unit * random.decades(1e-4, 1.0);
         (place.surface, place.h) = (surface, h.iter().map(|h| h * height).collect());
-        // By numbers of their own: the others stay what they were.
+        // A separate sequence, so that the other random numbers do not change.
         let own = &mut random.beside(0xc0a7);
-        // Elements of an oracle by quadrature are not slender.
+        // The quadrature of the oracle excludes slender elements.
         if own.chance(0.15) && place.is_alike() && (0.1..=10.0).contains(&(grid.dx / grid.dy)) {
             let coating = coating::on_both(own, &grid, (shear_modulus[0], poisson_ratio[0]));
             place.shear_modulus = coating.shear_modulus;
@@ -123,7 +123,7 @@ impl Place {
         place
     }
 
-    /// Tangential tables, and of the pressures where these are per loaded row.
+    /// Adds tangential tables, and tables of the pressures if they are per loaded row.
     pub fn take_tables(&mut self, random: &mut Random) {
         let (grid, kind) = (self.grid, Kind::random(random, &self.grid));
         let element = self.element();
@@ -136,7 +136,7 @@ impl Place {
         self.own = Some(Arc::new(own));
     }
 
-    /// The materials at the surfaces of both bodies: of their coating, or their own.
+    /// The materials at the surfaces of both bodies: those of the coating, or of the bodies.
     pub fn materials(&self) -> Compliance {
         let coating = self.effects.coating.as_ref();
         let (modulus, ratio) = coating.map_or((self.shear_modulus, self.poisson_ratio), Coating::at_surface);
@@ -146,17 +146,17 @@ impl Place {
         Compliance { shear, poisson, unlike: if self.is_alike() { 0.0 } else { 0.25 * (one - other) } }
     }
 
-    /// Tangential coefficients of half-spaces of these.
+    /// Tangential coefficients of half-spaces of these materials.
     pub fn element(&self) -> Element {
         Element::new(self.materials(), [self.grid.dx, self.grid.dy])
     }
 
-    /// A limit for the load.
+    /// A limit that suits the load.
     pub fn limit(&self, random: &mut Random) -> Option<Values> {
         Some(scales::limit(random, &self.scales(), self.load, &self.h, &self.grid))
     }
 
-    /// A smooth cylinder on a line of elements that are long across: plane strain, or nearly; the load is a part of the line's.
+    /// Becomes a smooth cylinder on a line of elements that are long across: nearly plane strain. The load is a part of that of the line.
     fn become_roller(&mut self, random: &mut Random, unit: f64) {
         let (n, length) = (random.integer(3, 300), random.decades(10.0, 1e6));
         self.grid = Grid { mx: n, my: 1, dx: unit, dy: unit * length };
@@ -164,13 +164,13 @@ impl Place {
         let x = |i: usize| (i as f64 + 0.5 - 0.5 * n as f64) * unit;
         self.surface = "roller".into();
         self.h = (0..n).map(|i| x(i).powi(2) / (2.0 * radius)).collect();
-        // Hertz: a line of half width a carries pi E* a^2/(4 R) on each length.
+        // Hertz: a line of half-width a carries pi E* a^2/(4 R) per length.
         let e_star = 1.0 / (std::f64::consts::PI * self.compliance());
         let a = random.between(0.1, 0.45) * n as f64 * unit;
         self.load = Load::Force(0.25 * std::f64::consts::PI * e_star * a * a / radius * self.grid.dy);
     }
 
-    /// That of the surfaces.
+    /// The compliance of the surfaces.
     fn compliance(&self) -> f64 {
         let own = || compliance(self.shear_modulus, self.poisson_ratio);
         self.effects.coating.as_ref().map_or_else(own, Coating::compliance)
@@ -180,7 +180,7 @@ impl Place {
         Scales::of(&self.h, &Effects::default(), &self.grid, self.compliance())
     }
 
-    /// Another load.
+    /// Sets another load.
     pub fn press(&mut self, random: &mut Random, is_measured: bool) {
         let c = self.compliance();
         self.load = match is_measured {
@@ -189,12 +189,12 @@ impl Place {
         };
     }
 
-    /// Whether pressures and tractions know nothing of each other.
+    /// Whether pressures and tractions are independent.
     pub fn is_alike(&self) -> bool {
         self.shear_modulus[0] == self.shear_modulus[1] && self.poisson_ratio[0] == self.poisson_ratio[1]
     }
 
-    /// The normal problem, with what tractions displace along the normal and what rounding may do to that.
+    /// The normal problem with the displacements along the normal by tractions, and their possible round-off.
     pub fn normal(&self, stop: &Stop, along: &[f64], rounding: f64) -> Case {
         let Place { grid, shear_modulus, poisson_ratio, load, effects, .. } = self.clone();
         let how = How {
@@ -230,7 +230,7 @@ impl Place {
     }
 }
 
-/// When the solve stops.
+/// The stopping rule of the solve.
 #[derive(Clone, Debug)]
 pub struct Stop {
     pub tolerance: f64,
@@ -247,7 +247,7 @@ impl Stop {
         Stop { tolerance, precision, threads, max_cycles: 1000, cancel_at: None }
     }
 
-    /// The same to a tolerance that leaves no doubt about mu N.
+    /// A rule with a tolerance that determines mu N.
     pub fn sharp(random: &mut Random) -> Stop {
         Stop { tolerance: 1e-8, ..Stop::unhindered(random) }
     }

@@ -1,4 +1,4 @@
-//! What holds for every answer with friction, of like and of unlike bodies, and what is excused.
+//! The rules for every result with friction, of like and unlike bodies, and the accepted reasons of refusals and early stops.
 
 use contact_normal::ffi::*;
 
@@ -13,7 +13,7 @@ use crate::rules;
 use crate::tangential::Operator;
 use crate::verdict::Verdict;
 
-/// A verdict whose failures say which case it is.
+/// A verdict whose failures name the case.
 struct Broken<'a> {
     case: &'a Case,
     verdict: Verdict,
@@ -26,7 +26,7 @@ impl Broken<'_> {
     }
 }
 
-/// One answer from what the bodies carried before.
+/// Checks a result, for the loads before the step.
 pub fn check(case: &Case, found: &Found, before: &Before) -> Verdict {
     let mut broken = Broken { case, verdict: Verdict::default() };
     let status = found.status;
@@ -56,7 +56,7 @@ pub fn check(case: &Case, found: &Found, before: &Before) -> Verdict {
     broken.verdict
 }
 
-/// Why friction may be refused with this status.
+/// The reason for which friction may be refused with this status.
 fn reason(case: &Case, status: i32) -> Option<&'static str> {
     if status == CONTACT_NORMAL_INFEASIBLE {
         return case.may_be_infeasible();
@@ -67,8 +67,7 @@ fn reason(case: &Case, status: i32) -> Option<&'static str> {
     None
 }
 
-/// What does not hold of an answer with status >= 0 that others certify along the normal. `certified`: the coefficients and the slip are
-/// those that this module knows.
+/// The violated conditions of the tangential problem, for a status >= 0. `certified`: this module has the coefficients and the slip of the call.
 pub fn answer(case: &Case, found: &Found, certified: bool) -> Verdict {
     let mut broken = Broken { case, verdict: Verdict::default() };
     let carried = check_bounds(case, found, &mut broken);
@@ -79,7 +78,7 @@ pub fn answer(case: &Case, found: &Found, certified: bool) -> Verdict {
     broken.verdict
 }
 
-/// Numbers, tractions within their bounds, stick and slip, and the forces; returns mu N.
+/// Checks that values are finite, tractions within their bounds, stick and slip, and the forces; returns mu N.
 fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
     let (status, slide) = (found.status, &case.slide);
     let report = &found.report;
@@ -95,9 +94,9 @@ fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
     let area = case.place.grid.element_area();
     let (mut carried, mut sum) = (0.0, [0.0; 2]);
     for i in 0..found.q.len() {
-        // Within an area that is fixed some elements may pull.
+        // On a fixed area some elements may be in tension.
         let (q, bound) = (found.q[i], slide.mu[i] * found.p[i].max(0.0));
-        // mu p of 0 and of numbers below the smallest have tractions of 0.
+        // If mu p is 0 or underflows, tractions are 0.
         broken.unless(length(q) <= bound, "|q| <= mu p to the last bit", || {
             format!("element {i}: {q:?}, bound {bound:e}, status {status}")
         });
@@ -131,7 +130,7 @@ fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
     carried
 }
 
-/// Status OK: stick and slip.
+/// Status OK: the conditions of stick and slip.
 fn check_slip(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
     let Conditions { left, scale, rounding, slip_error, .. } = *conditions;
     if found.status != CONTACT_NORMAL_OK {
@@ -149,12 +148,12 @@ fn check_slip(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
     broken.unless(slip_error <= rounding, "the slip is w + A q - u'", || format!("{slip_error:e}, {rounding:e}"));
 }
 
-/// The conditions of contact, with what tractions displace along the normal.
+/// The conditions of contact, with the displacements by tractions along the normal.
 fn check_contact(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
     let case = broken.case;
     let normal = case.place.normal(&case.stop, &conditions.along_normal, conditions.normal_rounding);
     let outputs = outputs(found);
-    // Turns that do not settle leave each problem with what the other one found a turn before.
+    // If turns do not settle, each problem has the result of the other one a turn before.
     let failures = match found.status == CONTACT_NORMAL_OK || case.place.is_alike() {
         true => rules::is_true(&normal, &outputs),
         false => rules::is_admissible(&normal, &outputs),
@@ -164,7 +163,7 @@ fn check_contact(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>
     }
 }
 
-/// What a call returned of the normal problem.
+/// The results of the normal problem of a call.
 fn outputs(found: &Found) -> Outputs {
     let Found { status, message, p, u, e, contact, report, overrun, written, .. } = found;
     Outputs {
@@ -180,7 +179,7 @@ fn outputs(found: &Found) -> Outputs {
     }
 }
 
-/// Status > 0: why that may be.
+/// Status > 0: the reason must be an accepted one.
 fn check_stop(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
     let (case, status) = (broken.case, found.status);
     let Conditions { left, scale, rounding, ref along_normal, normal_rounding, .. } = *conditions;
@@ -209,13 +208,14 @@ fn check_stop(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
     }
 }
 
-/// Whether the forces that are given are nearly all that the last pressures carry: turns there go between pressures that carry them and that do not.
+/// Whether the given forces are nearly those of full slip with the last pressures. Turns may then alternate between pressures that carry them and
+/// others that do not.
 fn nearly_slips(case: &Case, found: &Found) -> bool {
     let carried: f64 = case.slide.mu.iter().zip(&found.p).map(|(mu, p)| mu * p.max(0.0)).sum();
     case.slide.force() >= (1.0 - 1e-3) * carried * case.place.grid.element_area()
 }
 
-/// Own tables xx, yy and xy over the offsets `-mx..mx` by `-my..my` of a place.
+/// The tables xx, yy and xy of the half-space of a place, over the offsets `-mx..mx` by `-my..my`.
 pub fn tables(place: &Place) -> Vec<Vec<f64>> {
     let Grid { mx, my, .. } = place.grid;
     let wider = Grid { mx: mx + 1, my: my + 1, ..place.grid };

@@ -1,6 +1,6 @@
-//! A handle through a random sequence of calls with friction and without: from rest, continued, refused, cancelled once, a batch.
+//! A handle in a random sequence of calls with friction and without: from rest, continued, refused, cancelled once, a batch.
 //!
-//! A refusal changes no output and nothing that the handle holds. A call that starts from nothing has the bits of one on its own.
+//! A refusal changes no output, and nothing that the handle holds. A call without a start has the bits of a call without a handle.
 
 use contact_normal::ffi::*;
 
@@ -13,21 +13,21 @@ use crate::grid::Load;
 use crate::random::Random;
 use crate::verdict::Verdict;
 
-/// What the handle went through.
+/// A handle and its sequence of calls.
 struct Sequence<'a> {
     random: &'a mut Random,
     handle: Handle,
-    /// The last step with friction, from which one continues whatever solves without friction followed.
+    /// The last step with friction. The next one continues from it, also after solves without friction.
     last: Option<Before>,
     is_measured: bool,
     case: Case,
-    /// In words: for whoever reads a failure.
+    /// The sequence in words, for the messages of failures.
     history: String,
     statuses: Vec<i32>,
     verdict: Verdict,
 }
 
-/// A sequence: the statuses of its calls, and what was not kept.
+/// Runs a sequence; returns the statuses of its calls, and the broken promises.
 pub fn run(random: &mut Random, is_measured: bool) -> (Case, Vec<i32>, Verdict) {
     let place = Place::random(random, is_measured);
     let without = frictionless(&place, &Stop::sharp(random));
@@ -53,7 +53,7 @@ pub fn run(random: &mut Random, is_measured: bool) -> (Case, Vec<i32>, Verdict) 
 
 impl Sequence<'_> {
     fn step(&mut self) {
-        // The next load and motion; what a handle was set up with stays.
+        // The next load and motion; the set-up does not change.
         if self.random.chance(0.7) {
             self.change();
         }
@@ -119,14 +119,14 @@ impl Sequence<'_> {
         self.fail_unless(found.bits() == fresh.bits(), "a start from nothing has the bits of a new handle");
     }
 
-    /// From the last step with friction; without one a refusal.
+    /// A step from the last one with friction; without one it must be refused.
     fn continued(&mut self) {
         let held = self.handle.fields(self.case.place.grid.len());
         let Case { place, slide, stop, .. } = &self.case;
         let found = self.handle.solve(place, Some((slide, From::Handle)), stop);
         self.note("continued", &found);
         if found.status == CONTACT_NORMAL_INVALID_ARGUMENT {
-            // Nothing to continue from, or steady rolling by less than a tenth of an element.
+            // There is no step to continue from, or steady rolling has a step of less than a tenth of an element.
             let is_short = self.case.step_is_too_short();
             self.fail_unless(self.last.is_none() || is_short, "a step continues from the last one with friction");
             self.keeps(&held);
@@ -142,7 +142,7 @@ impl Sequence<'_> {
         }
     }
 
-    /// A call that is none.
+    /// A call that must be refused.
     fn refused(&mut self) {
         let held = self.handle.fields(self.case.place.grid.len());
         let Case { mut place, mut slide, mut stop, carried, .. } = self.case.clone();
@@ -201,14 +201,14 @@ impl Sequence<'_> {
         }
     }
 
-    /// A refusal changes nothing that the handle holds.
+    /// Checks that a refusal changes nothing that the handle holds.
     fn keeps(&mut self, held: &Found) {
         let now = self.handle.fields(self.case.place.grid.len());
         let same = now.status == held.status && (now.status < 0 || now.bits() == held.bits());
         self.fail_unless(same, "a refusal changes nothing that a handle holds");
     }
 
-    /// Cancelled once, anywhere; `check` sees that it stays cancelled.
+    /// A call that is cancelled once, at any callback; `check` verifies that it stays cancelled.
     fn cancelled(&mut self) {
         let stop = Stop { cancel_at: Some(self.random.integer(1, 40) as u32), ..self.case.stop.clone() };
         let Case { place, slide, carried, .. } = self.case.clone();
@@ -219,7 +219,7 @@ impl Sequence<'_> {
         self.add(check(&case, &found, &case.before(&found.p)));
     }
 
-    /// Several loads in one call, by one to three threads: the bits of calls on their own. None may continue.
+    /// Several loads in one call, on one to three threads: the bits are those of single calls. No step may continue.
     fn batch(&mut self) {
         let Case { place, slide, stop, .. } = self.case.clone();
         let stop = Stop { threads: self.random.integer(1, 3) as i32, ..stop };

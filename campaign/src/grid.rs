@@ -1,6 +1,6 @@
-//! The elements and what is prescribed.
+//! The elements and the load.
 
-/// The elements.
+/// The grid of elements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     pub mx: usize,
@@ -23,7 +23,7 @@ impl Grid {
     }
 }
 
-/// What is prescribed.
+/// The prescribed load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Load {
     Approach(f64),

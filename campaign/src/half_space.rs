@@ -1,4 +1,4 @@
-//! Influence coefficients of the half-space, by Love's closed form and by the Fourier series of a scene that repeats itself.
+//! Influence coefficients of the half-space, by Love's closed form and, for periodic scenes, by Fourier series.
 //!
 //! ```text
 //! c(X, Y) = c [F(X+, Y+) - F(X+, Y-) - F(X-, Y+) + F(X-, Y-)],  F(a, b) = a asinh(b/|a|) + b asinh(a/|b|)     (Love 1929)
@@ -8,10 +8,10 @@
 //!
 //! ```text
 //! j > 0     2 c sum over m of sinc_m * integral of K0(w_m |y|) over the element,  w_m = |t + 2 pi m|/dx
-//! j = 0     2 c   integral of log(W/|y|) over the element; W is the grid's width: what the library says its approach is relative to
+//! j = 0     2 c   integral of log(W/|y|) over the element; W: the grid's width, at which displacements are zero
 //! ```
 //!
-//! and with a period in y too the sums over its images: geometric for j > 0, `-log |2 sin(pi y/Ly)|` (Clausen's function) for j = 0.
+//! With a second period, in y, there are sums over its images: geometric for j > 0, `-log |2 sin(pi y/Ly)|` (Clausen's function) for j = 0.
 
 use std::f64::consts::PI;
 
@@ -20,7 +20,7 @@ pub fn compliance(shear_modulus: [f64; 2], poisson_ratio: [f64; 2]) -> f64 {
     (0..2).map(|i| (1.0 - poisson_ratio[i]) / (2.0 * shear_modulus[i])).sum::<f64>() / PI
 }
 
-/// Coefficients at offsets >= 0, `[ky][kx]`, and what rounding may do to one of them.
+/// Coefficients at offsets >= 0, `[ky][kx]`, and the possible round-off of one.
 pub struct Quadrant {
     pub mx: usize,
     pub values: Vec<f64>,
@@ -39,19 +39,19 @@ fn potential(a: f64, b: f64) -> f64 {
     term(a, b) + term(b, a)
 }
 
-/// Of a scene that does not repeat itself.
+/// The coefficients without a period.
 pub fn free(mx: usize, my: usize, dx: f64, dy: f64, c: f64) -> Quadrant {
     let corner = |kx: usize, ky: usize| potential((kx as f64 - 0.5) * dx, (ky as f64 - 0.5) * dy);
     let corners: Vec<f64> = (0..=my).flat_map(|ky| (0..=mx).map(move |kx| corner(kx, ky))).collect();
     let at = |kx: usize, ky: usize| corners[ky * (mx + 1) + kx];
     let value = |kx: usize, ky: usize| c * (at(kx + 1, ky + 1) - at(kx + 1, ky) - at(kx, ky + 1) + at(kx, ky));
     let values = (0..my).flat_map(|ky| (0..mx).map(move |kx| value(kx, ky))).collect();
-    // Four terms, each to some units of round-off of the largest.
+    // Four terms, each with some units of round-off of the largest.
     let largest = corners.iter().fold(0.0, |largest: f64, f| largest.max(f.abs()));
     Quadrant { mx, values, rounding: 16.0 * f64::EPSILON * c * largest }
 }
 
-/// Of a scene that repeats itself in x, in y or in both.
+/// The coefficients with a period in x, in y or in both.
 pub fn periodic(mx: usize, my: usize, dx: f64, dy: f64, c: f64, (x, y): (bool, bool)) -> Quadrant {
     if !x {
         let turned = periodic(my, mx, dy, dx, c, (true, false));
@@ -73,9 +73,9 @@ pub fn periodic(mx: usize, my: usize, dx: f64, dy: f64, c: f64, (x, y): (bool, b
             }
         }
     }
-    // Sums of terms of which each is good to some units of round-off, and the trapezoidal rule's 7e-18. The modes of a single element of
-    // two periods cancel to nothing: their terms are of the size of a half-space's coefficient. The uniform mode of two periods is the
-    // difference of two edges' primitives, which are of the size of the grid's width.
+    // Sums of terms, each with some units of round-off, and the trapezoidal rule's 7e-18. The modes of a single element with two periods cancel:
+    // their terms are as large as a half-space's coefficient. The uniform mode of two periods is the difference of the primitives at two edges, which
+    // are as large as the grid's width.
     let width = if y { my as f64 * dy } else { 0.0 };
     Quadrant { mx, values, rounding: f64::EPSILON * (64.0 * (sizes + c * dx.max(dy)) + 16.0 * c * width / mx as f64) }
 }
@@ -92,8 +92,8 @@ fn uniform_mode(my: usize, dy: f64, c: f64, repeats: bool) -> Vec<f64> {
     (0..my).map(|ky| 2.0 * c * over_element(ky)).collect()
 }
 
-/// The mean of `log(my/|t|)` over `k - 1/2 < t < k + 1/2`. The primitive `t (1 + log(my/t))` at both ends is `log(my/k)` and what
-/// the ends differ by, of the size of 1: the difference of two primitives, of the size of my, would leave my times the round-off of a logarithm.
+/// The mean of `log(my/|t|)` over `k - 1/2 < t < k + 1/2`. The primitive `t (1 + log(my/t))` at both ends is written as `log(my/k)` plus a difference
+/// of order 1, because the difference of two primitives of order my would have my times the round-off of a logarithm.
 fn mean_of_log(k: f64, my: f64) -> f64 {
     if k == 0.0 {
         return 1.0 + (2.0 * my).ln();
@@ -108,7 +108,7 @@ fn clausen(angle: f64) -> f64 {
     if t == 0.0 {
         return 0.0;
     }
-    // |B_2k|/(2k)! = 2 zeta(2k)/(2 pi)^2k; |t/2 pi| <= 1/2, so 30 terms leave 4^-30
+    // |B_2k|/(2k)! = 2 zeta(2k)/(2 pi)^2k; |t/2 pi| <= 1/2, so that the error after 30 terms is 4^-30
     let term = |k: i32| {
         let zeta: f64 = 1.0 + (2..40).map(|n| f64::from(n).powi(-2 * k)).sum::<f64>() + zeta_tail(40.0, 2 * k);
         zeta * (t / (2.0 * PI)).powi(2 * k) / f64::from(k * (2 * k + 1))
@@ -116,7 +116,7 @@ fn clausen(angle: f64) -> f64 {
     t * (1.0 - t.abs().ln() + (1..=30).map(term).sum::<f64>())
 }
 
-/// Sum over n >= first of n^-s by Euler and Maclaurin; the next term is below 1e-17 of 1 from 40 on.
+/// Sum over n >= first of n^-s by the Euler-Maclaurin formula; the next term is below 1e-17 from first = 40 on.
 fn zeta_tail(first: f64, s: i32) -> f64 {
     let r = f64::from(s);
     first.powi(1 - s) / (r - 1.0) + 0.5 * first.powi(-s) + r / 12.0 * first.powi(-s - 1)
@@ -154,7 +154,7 @@ fn wave_mode(t: f64, my: usize, dx: f64, dy: f64, c: f64, repeats: bool) -> Vec<
             if repeats {
                 rows[0] += 2.0 * weight * at(my);
             }
-            // Farther rows get less than e^-80 of it.
+            // Farther rows have less than e^-80 of it.
             let reach = ((NEGLIGIBLE / x) as usize).saturating_add(1);
             for ky in 1..my.min(reach + 1) {
                 rows[ky] += weight * at(ky);
@@ -167,7 +167,7 @@ fn wave_mode(t: f64, my: usize, dx: f64, dy: f64, c: f64, repeats: bool) -> Vec<
     rows
 }
 
-/// `sum over all m of (-1)^m sign/(t + 2 pi m)^2`, by means of partial sums: 40 of them leave 2^-40 of a term of 1e-4.
+/// `sum over all m of (-1)^m sign/(t + 2 pi m)^2`, by means of partial sums: the error of 40 of them is 2^-40 of a term of 1e-4.
 fn alternating(t: f64) -> f64 {
     let term = |m: i32| {
         let sign = if m % 2 == 0 { 1.0 } else { -1.0 };
@@ -186,7 +186,7 @@ fn alternating(t: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The mean of 1/rho over an element, by midpoints: m x m of them are good to about 1/m^2 of the nearest distance.
+    /// The mean of 1/rho over an element by the midpoint rule: the error of m x m points is about 1/m^2 of the nearest distance.
     fn by_midpoints(x: f64, y: f64, dx: f64, dy: f64, m: usize) -> f64 {
         let at = |i: usize, d: f64| ((i as f64 + 0.5) / m as f64 - 0.5) * d;
         let points = (0..m * m).map(|i| (x - at(i % m, dx)).hypot(y - at(i / m, dy)).recip());
@@ -204,13 +204,13 @@ mod tests {
         assert!((free(1, 1, 2.0, 2.0, 1.0).at(0, 0) - 8.0 * 1f64.asinh()).abs() <= 1e-14);
     }
 
-    /// The mean of the logarithm, by midpoints; far away by its expansion `log(my/k) + 1/(24 k^2)`, whose next term is `7/(960 k^4)`.
+    /// The mean of the logarithm by the midpoint rule; far away by its expansion `log(my/k) + 1/(24 k^2)`, whose next term is `7/(960 k^4)`.
     #[test]
     fn the_mean_of_the_logarithm_is_right_near_and_far() {
         for k in [1.0, 2.0, 5.0] {
             let at = |i: u32| (9.0 / (k - 0.5 + (f64::from(i) + 0.5) / 1000.0)).ln();
             let mean = (0..1000).map(at).sum::<f64>() / 1000.0;
-            // Midpoints are off by the second derivative, at most 4, times 1/24 of the square of a step.
+            // The error of the midpoint rule is the second derivative, at most 4, times 1/24 of the square of a step.
             assert!((mean_of_log(k, 9.0) - mean).abs() <= 2e-7, "{k}");
         }
         for k in [1e3, 1e6, 1e9] {
@@ -219,8 +219,8 @@ mod tests {
         }
     }
 
-    /// Differences of coefficients are sums over images that converge: what is left beyond n periods is `1/n^2` (one period) of the
-    /// first image's; with two periods, over squares of images, as `1/n` twice.
+    /// Differences of coefficients are sums over images that converge. With one period the rest beyond n periods is `1/n^2` of the first image; with
+    /// two periods, over squares of images, it falls as `1/n` twice.
     #[test]
     fn periodic_coefficients_are_sums_over_images() {
         let (mx, my, dx, dy, images) = (6, 5, 0.5, 0.6, 60i64);
@@ -255,7 +255,7 @@ mod tests {
         let quadrant = periodic(mx, my, 0.5, 0.6, 1.0, (true, true));
         let sum: f64 = quadrant.values.iter().sum();
         assert!(sum.abs() <= (mx * my) as f64 * quadrant.rounding, "{sum}");
-        // And periodic: offsets k and m - k are one.
+        // The coefficients are periodic: offsets k and m - k are equal.
         for (kx, ky) in [(1, 2), (2, 4), (3, 1)] {
             let mirrored = quadrant.at(mx as i64 - kx, my as i64 - ky);
             assert!((quadrant.at(kx, ky) - mirrored).abs() <= 2.0 * quadrant.rounding);

@@ -1,18 +1,18 @@
-//! The transfer function of a bonded layer, and the radial function that is its Hankel integral (`coating` has the formulas).
+//! The transfer function of a bonded layer, and its Hankel integral, a radial function (`coating` has the formulas).
 
 use std::f64::consts::PI;
 
-/// Nodes of a panel of the table, as many as that to be good to 1e-13; panels are half as wide as `asinh(rho/2)` changes by 1.
+/// The nodes of a panel of the table, for an accuracy of 1e-13. On a panel `asinh(rho/2)` changes by 1/2.
 const NODES: usize = 14;
 
-/// N of pressures, N of tractions along a wave, and D of both,
+/// N for pressures, N for tractions along a wave, and D of both,
 ///
 /// ```text
 /// N = 1 +- 4 s kappa e - lambda kappa e^2,    D = 1 - (lambda + kappa + 4 kappa s^2) e + lambda kappa e^2,    e = exp(-2 s)
 /// ```
 ///
-/// as they are defined for a soft layer. Of a stiff one lambda and kappa are near 1: there they are sums of terms that are positive, with
-/// `lambda = 1 - p`, `kappa = 1 - q`, `sinh^2 s - s^2` and `sinh 2s - 2s`.
+/// as defined for a soft layer. For a stiff one lambda and kappa are near 1: there N and D are sums of positive terms with `lambda = 1 - p`, `kappa =
+/// 1 - q`, `sinh^2 s - s^2` and `sinh 2s - 2s`.
 fn parts(mu: f64, [nu1, nu2]: [f64; 2], s: f64) -> [f64; 3] {
     let (p, q) = (4.0 * (1.0 - nu1) / (1.0 + mu * (3.0 - 4.0 * nu2)), 4.0 * (1.0 - nu1) / (mu + 3.0 - 4.0 * nu1));
     let (lambda, kappa, e) = (1.0 - p, 1.0 - q, (-2.0 * s).exp());
@@ -43,19 +43,19 @@ fn beyond(x: f64, order: u32) -> f64 {
     sum
 }
 
-/// B(s).
+/// The transfer function B(s).
 pub fn transfer(mu: f64, nu: [f64; 2], s: f64) -> f64 {
     let [n, _, d] = parts(mu, nu, s);
     n / d
 }
 
-/// How the surface gives way to tractions along a wave and across it, over a half-space of the layer's material: plane and antiplane strain.
+/// The response of the surface to tractions along a wave and across it, relative to a half-space of the layer's material: plane and antiplane strain.
 pub fn of_tractions(mu: f64, nu: [f64; 2], s: f64) -> [f64; 2] {
     let [_, n, d] = parts(mu, nu, s);
     [n / d, (mu + s.tanh()) / (1.0 + mu * s.tanh())]
 }
 
-/// Nodes and weights on [0, 1] by Newton's method on the Legendre polynomial.
+/// Nodes and weights of Gauss's rule on [0, 1], by Newton's method on the Legendre polynomial.
 pub fn gauss(n: usize) -> Vec<(f64, f64)> {
     let legendre = |x: f64| {
         let (mut before, mut p) = (1.0, x);
@@ -76,15 +76,15 @@ pub fn gauss(n: usize) -> Vec<(f64, f64)> {
     (0..n).map(node).collect()
 }
 
-/// Gauss's rules over an element, of functions of `rho = r/t` that have their singularities at +-2i: twelve points on each two thicknesses beside the load,
-/// `(2 + sqrt 5)^-24 = 1e-15`; twelve in all from 2.5 elements on; and four from 24 elements on, where F is as smooth as 1/rho or smoother.
+/// Gauss's rules over an element for functions of `rho = r/t` with singularities at +-2i. Near the load they have twelve points for each two
+/// thicknesses, `(2 + sqrt 5)^-24 = 1e-15`; from 2.5 elements on twelve in all; and from 24 elements on four, where F is at least as smooth as 1/rho.
 pub struct Rules {
     rules: [Vec<(f64, f64)>; 3],
     longer: f64,
 }
 
 impl Rules {
-    /// For elements as long as this in their longer direction, in thicknesses.
+    /// The rules for elements with this length, in thicknesses, in their longer direction.
     pub fn new(longer: f64) -> Rules {
         let (near, far) = (gauss(12), gauss(4));
         let panels = (0.5 * longer).ceil().max(1.0);
@@ -93,14 +93,14 @@ impl Rules {
         Rules { rules: [beside, near, far], longer }
     }
 
-    /// At a distance in thicknesses, for both directions.
+    /// The rule at a distance in thicknesses, for both directions.
     pub fn at(&self, distance: f64) -> &[(f64, f64)] {
         let elements = distance / self.longer;
         &self.rules[usize::from(elements > 2.5) + usize::from(elements > 24.0)]
     }
 }
 
-/// F up to a distance, on panels in `v = asinh(rho/2)`.
+/// A table of F up to a distance, on panels in `v = asinh(rho/2)`.
 pub struct Table {
     width: f64,
     panels: Vec<Vec<f64>>,
@@ -109,12 +109,12 @@ pub struct Table {
 }
 
 impl Table {
-    /// Of pressures: order 0.
+    /// The table for pressures, of order 0.
     pub fn new(mu: f64, nu: [f64; 2], last: f64) -> Table {
         Table::of(mu, &|s| transfer(mu, nu, s) - 1.0, libm::j0, last)
     }
 
-    /// Of any function of s that fades as a layer's does, of G1/G2 = mu, with a Bessel function.
+    /// The table for any function of s that decays as a layer's does, with G1/G2 = mu, and a Bessel function.
     pub fn of(mu: f64, faded: &dyn Fn(f64) -> f64, bessel: fn(f64) -> f64, last: f64) -> Table {
         let count = ((0.5 * last).asinh() / 0.5).ceil().max(1.0);
         let width = 1.0001 * (0.5 * last).asinh() / count;
@@ -147,7 +147,8 @@ impl Table {
     }
 }
 
-/// Nodes s and weights times the function: panels of ten points on eight radians at most, doubling from where a stiff layer begins to be one.
+/// Nodes s, and weights times the function: panels of ten points on at most eight radians, with lengths that double from the scale of a stiff layer
+/// on.
 fn hankel(mu: f64, faded: &dyn Fn(f64) -> f64, rho: f64) -> Vec<(f64, f64)> {
     let (widest, rule) = (f64::min(0.5, 8.0 / rho), gauss(10));
     let (mut nodes, mut low, mut width) = (Vec::new(), 0.0, f64::min(widest, 0.02 / mu.max(1.0)));

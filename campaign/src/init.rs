@@ -2,7 +2,7 @@
 
 use std::mem::MaybeUninit;
 
-/// A struct as its `_init` fills it.
+/// A struct as its `_init` function fills it.
 pub fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
     let mut value = MaybeUninit::uninit();
     // SAFETY: `_init` fills a whole struct.

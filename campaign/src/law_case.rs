@@ -1,4 +1,4 @@
-//! A random law of friction and a layer that yields, and what they say of an answer: bounds by slips, and what particles carry.
+//! A random law of friction and a plastic layer, with the bounds by slips and the state of particles that they imply for a result.
 
 use contact_normal::ffi::*;
 
@@ -8,21 +8,21 @@ use crate::friction_found::Found;
 use crate::own_tractions::Kind;
 use crate::random::Random;
 
-/// What particles of the interface have: mu and a yield limit of each element.
+/// The state of the particles of the interface: mu and a yield limit for each element.
 #[derive(Clone, Debug)]
 pub struct Particles {
     pub mu: Vec<f64>,
     pub limit: Vec<f64>,
 }
 
-/// A law, a layer, and which solution is wanted. 0: there is none.
+/// A law, a layer, and the branch of the solution. Values of 0: there is none.
 #[derive(Clone, Debug)]
 pub struct Law {
     pub kind: i32,
     pub kinetic: f64,
     pub falling: [f64; 2],
     pub half_speed: [f64; 2],
-    /// Of rolling; of a shift what it takes.
+    /// The rolling speed; a shift has a duration instead.
     pub speed: f64,
     pub duration: f64,
     pub memory_distance: f64,
@@ -30,16 +30,16 @@ pub struct Law {
     pub yield_limit: f64,
     pub hardening: f64,
     pub branch: i32,
-    /// Of the layer's elastic part.
+    /// The compliance of the layer's elastic part.
     pub compliance: f64,
 }
 
 impl Law {
-    /// Of a case, whose motion becomes one that is solved with it: slips of its size, tractions of its pressures.
+    /// A law for a case, whose motion is changed to one that is solved with it: slips of its order, tractions of the order of its pressures.
     pub fn random(random: &mut Random, case: &mut Case, p: &[f64]) -> Law {
         let (grid, slide) = (case.place.grid, &mut case.slide);
         let is_shift = slide.motion == CONTACT_NORMAL_MOTION_SHIFT;
-        // Slips that are prescribed; of forces those that displacements suggest.
+        // Prescribed slips; for forces those that displacements suggest.
         let amounts = [0, 1].map(|k| if slide.is_force(k) { 0.0 } else { slide.amount[k] });
         let steps = if is_shift { 1.0 } else { grid.dx };
         let slip = length(amounts) * steps + 1e-6 * grid.dx;
@@ -47,7 +47,7 @@ impl Law {
         let falls = random.chance(0.8);
         let h = [0, 1].map(|_| slip / duration * random.decades(0.01, 100.0));
         let has_memory = falls && random.chance(0.5);
-        // Bounds that rise beside a law that falls, in two ways; more often than by chance.
+        // Bounds may rise although a law falls, in two ways; they are drawn more often than by chance.
         let (rises, differs) = (random.chance(0.25), random.chance(0.25) && !slide.has_forces());
         if differs {
             slide.uniform = false;
@@ -85,17 +85,17 @@ impl Law {
         law
     }
 
-    /// Whether there is a law, or a limit that slip changes.
+    /// Whether there is a law, or a limit that changes with the slip.
     pub fn is_one(&self) -> bool {
         self.kind > 0 || self.hardening != 0.0
     }
 
-    /// Of fresh material.
+    /// The state of fresh material.
     pub fn fresh(&self, case: &Case) -> Particles {
         Particles { mu: case.slide.mu.clone(), limit: vec![self.yield_limit; case.slide.mu.len()] }
     }
 
-    /// Writes it into the struct; `before`: what particles had.
+    /// Writes the law into the struct; `before` is the state of the particles before the step.
     pub fn put(&self, friction: &mut contact_normal_friction, before: Option<&Particles>) {
         (friction.law, friction.kinetic, friction.falling) = (self.kind, self.kinetic, self.falling);
         (friction.half_speed, friction.speed, friction.time_step) = (self.half_speed, self.speed, self.duration);
@@ -108,7 +108,7 @@ impl Law {
         }
     }
 
-    /// mu at a slip velocity over that at rest.
+    /// mu at a slip velocity, relative to that at rest.
     fn falls(&self, v: f64) -> f64 {
         let f = |k: usize| {
             let x = v / self.half_speed[k];
@@ -123,7 +123,7 @@ impl Law {
         (self.kinetic + a * f(0) + if b > 0.0 { b * f(1) } else { 0.0 }) / (self.kinetic + a + b)
     }
 
-    /// The bound of an element at a slip, and mu and the limit of its particle then.
+    /// The bound of an element at a slip, and the new mu and limit of its particle.
     fn at(&self, slip: f64, (p, mu): (f64, f64), (had_mu, had_limit): (f64, f64)) -> (f64, f64, f64) {
         let mut now = mu;
         if self.kind > 0 {
@@ -142,7 +142,7 @@ impl Law {
         (limit, now, limit)
     }
 
-    /// The scale of slips, `plain` without the layer: the layer displaces, too, in a shift and by forces.
+    /// The scale of slips, `plain` without the layer: in a shift, and with given forces, displacements of the layer count as well.
     pub fn scale(&self, case: &Case, found: &Found, plain: f64) -> f64 {
         let counts = case.slide.motion == CONTACT_NORMAL_MOTION_SHIFT || case.slide.has_forces();
         if !(counts && self.compliance > 0.0) {
@@ -158,7 +158,7 @@ impl Law {
         f64::max(plain + self.compliance * f64::sqrt(tractions / elements), f64::sqrt(displaced / elements))
     }
 
-    /// The element in which the particle of element i was a step before: in rolling the next one towards which it rolls.
+    /// The element at which the particle of element i was a step before: in rolling the next one in the rolling direction.
     pub fn upstream(case: &Case, i: usize) -> Option<usize> {
         let [step, _] = case.slide.step(&case.place.grid);
         let (x, mx) = (i % case.place.grid.mx, case.place.grid.mx);
@@ -169,7 +169,8 @@ impl Law {
         }
     }
 
-    /// Bounds of all elements by the slips of an answer, each with its change where the slip is another one by `delta`, and what particles have then.
+    /// The bounds of all elements by the slips of a result, each with its change for a change `delta` of the slip, and the new state of the
+    /// particles.
     pub fn bounds(&self, case: &Case, found: &Found, before: &Particles, delta: f64) -> (Vec<[f64; 2]>, Particles) {
         let n = found.p.len();
         let is_steady = case.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING;
@@ -184,7 +185,7 @@ impl Law {
             let from = Law::upstream(case, i).filter(|&j| entered[j]);
             let had = from.map_or((fresh.mu[i], fresh.limit[i]), |j| (of.mu[j], of.limit[j]));
             entered[i] = !is_steady || from.is_some() || found.p[i] > 0.0 && case.slide.mu[i] > 0.0;
-            // Without friction they are as outside of contact.
+            // Without friction particles are as outside the contact.
             let slips =
                 found.p[i] > 0.0 && case.slide.mu[i] > 0.0 && found.stick_slip[i] >= CONTACT_NORMAL_STICK_SLIP_SLIP;
             let slip = if slips { length(found.slip[i]) } else { 0.0 };
@@ -198,7 +199,7 @@ impl Law {
     }
 }
 
-/// Of the size of an element's influence on itself.
+/// The order of an element's influence on itself.
 fn own_influence(case: &Case) -> f64 {
     let grid = &case.place.grid;
     let modulus =

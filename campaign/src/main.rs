@@ -3,12 +3,12 @@
 //! ```text
 //! cargo run --release -p campaign -- 20000            cases of seeds 0..20000
 //! cargo run --release -p campaign -- 20000 500000     of seeds 500000..520000
-//! cargo run --release -p campaign -- --measured 5000  cases of what people bring, of seeds 0..5000
+//! cargo run --release -p campaign -- --measured 5000  cases like measured ones, of seeds 0..5000
 //! cargo run --release -p campaign -- --friction 5000  cases with friction alone, of seeds 0..5000
 //! cargo run --release -p campaign -- --measured --friction 5000
 //! cargo run --release -p campaign -- --adhesion 5000  cases with adhesion alone, of seeds 0..5000
 //! cargo run --release -p campaign -- --laws 5000      laws of friction, layers that yield, wear, of seeds 0..5000
-//! cargo run --release -p campaign -- --relaxing 5000  paths of bodies that relax, of seeds 0..5000
+//! cargo run --release -p campaign -- --relaxing 5000  paths of viscoelastic bodies, of seeds 0..5000
 //! cargo run --release -p campaign -- --seed 17        one case again, with all that is known of it
 //! cargo run --release -p campaign -- --measured --seed 17
 //! cargo run --release -p campaign -- --replay FILE    the scene of a dump (docs/dump.md)
@@ -57,7 +57,7 @@ fn main() -> ExitCode {
     let mut account = Account::default();
     for seed in seeds {
         let run = run(seed);
-        // At once, for whoever stops a long campaign.
+        // Failures are printed immediately, because a long campaign may be stopped.
         run.verdict.failures.iter().for_each(|failure| eprintln!("seed {seed}: {}", failure.promise));
         account.add(&run);
     }
@@ -74,7 +74,7 @@ fn end(is_clean: bool) -> ExitCode {
     }
 }
 
-/// The scene of a dump.
+/// Runs the scene of a dump.
 fn dumped(path: &str) -> ExitCode {
     let bytes = std::fs::read(path).map_err(|why| why.to_string());
     match bytes.and_then(|bytes| Dump::read(&bytes)).and_then(|dump| campaign::replay::run(&dump)) {
@@ -86,7 +86,7 @@ fn dumped(path: &str) -> ExitCode {
     }
 }
 
-/// One case, in full.
+/// Prints one case in full.
 fn replay(run: &Run) -> ExitCode {
     println!("seed {}: {}", run.case.seed, run.case.describe());
     println!(
@@ -102,9 +102,9 @@ fn replay(run: &Run) -> ExitCode {
 
 /// The calls of a case.
 struct Calls {
-    /// Kind and status of each.
+    /// The kind and the status of each call.
     ends: Vec<(String, i32)>,
-    /// Products of a call of AUTO that are counted.
+    /// Products of a call of AUTO, if they are counted.
     products: Option<f64>,
     verdict: Verdict,
 }
@@ -116,7 +116,7 @@ fn friction(seed: u64, is_measured: bool) -> Calls {
     Calls { ends, products: None, verdict: run.verdict }
 }
 
-/// Steps of bodies that relax, by method and effects.
+/// Steps of viscoelastic bodies, by method and effects.
 fn relaxing(seed: u64) -> Calls {
     let run = campaign::relaxing::run(seed);
     let kind = format!("{}, {}", run.case.method(), run.case.effects.name());
@@ -138,7 +138,7 @@ fn adhesion(seed: u64) -> Calls {
     Calls { ends, products: run.products, verdict: run.verdict }
 }
 
-/// Runs the cases of these seeds, and prints how their calls ended, their products, and what was not kept.
+/// Runs the cases of these seeds, and prints the ends of their calls, their products, and the broken promises.
 fn report(seeds: Range<u64>, run: impl Fn(u64) -> Calls) -> ExitCode {
     let (mut ends, mut excuses, mut products, mut failed) = (BTreeMap::new(), Excuses::default(), Vec::new(), false);
     for seed in seeds {

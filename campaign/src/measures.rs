@@ -1,24 +1,24 @@
-//! The conditions of an answer, recomputed.
+//! The measures of a result, recomputed.
 
 use crate::call::Outputs;
 use crate::case::Case;
 
-/// The conditions of an answer, recomputed.
+/// The measures of a result, recomputed.
 pub struct Measures {
     /// 2-norms over C of `h - approach + A p` and of `h - approach`.
     pub residual: f64,
     pub distance: f64,
-    /// Elements in C.
+    /// The number of elements in C.
     pub count: f64,
-    /// rms of `h - approach` over C and the elements at their limit.
+    /// The rms of `h - approach` over C and the elements at their limit.
     pub rms: f64,
-    /// Largest -e outside and e at a limit.
+    /// The largest -e outside C, and e at a limit.
     pub violation: f64,
     /// `sum of p |e|` over C, and `sum of p |u|`.
     pub work: (f64, f64),
-    /// What rounding may do to one e.
+    /// The possible round-off of one e.
     pub rounding: f64,
-    /// Largest difference between the displacements returned and A p, and between the distances returned and theirs.
+    /// The largest difference between the returned displacements and A p, and between the returned distances and those by the displacements.
     pub wrong_u: f64,
     pub wrong_e: f64,
 }
@@ -49,7 +49,7 @@ impl Measures {
                 continue;
             }
             let e = h - approach + u;
-            // Two sums of three numbers.
+            // Both are sums of three numbers.
             let by_u = h - approach + found.u[i];
             let allowed = 4.0 * f64::EPSILON * (h.abs() + approach.abs() + u.abs()) + case.h_rounding;
             m.wrong_e = m.wrong_e.max((by_u - found.e[i]).abs() - allowed);
@@ -76,14 +76,14 @@ impl Measures {
         m
     }
 
-    /// In one line.
+    /// The measures in one line.
     pub fn text(&self, found: &Outputs) -> String {
         let (status, cycles, work) = (found.status, found.report.statistics.cycles, found.report.statistics.work_units);
         let (residual, violation, rms) = (self.relative(), self.violation, self.rms);
         format!("status {status}, {cycles} cycles, {work:.1} units: residual {residual:.2e}, violation {violation:.2e} of {rms:.2e}")
     }
 
-    /// The residual over C, in parts of the distance.
+    /// The residual over C, relative to the distances.
     pub fn relative(&self) -> f64 {
         if self.residual == 0.0 {
             0.0
@@ -94,13 +94,13 @@ impl Measures {
 
     /// Whether the residual is within a tolerance.
     pub fn residual_holds(&self, tolerance: f64) -> bool {
-        // The tolerance is a double, the norms are sums of n squares.
+        // The tolerance is rounded, and the norms are sums of n squares.
         self.residual <= tolerance * (1.0 + 1e-12) * self.distance + self.rounding * self.count.sqrt()
     }
 
-    /// Whether the conditions hold but for what rounding may leave of each: then nobody can do better. With a prescribed force the
-    /// approach is a mean over C, a sum of so many numbers. Measured over 60000 cases: what stagnates is within four of one e's rounding
-    /// on small contact areas, within 13 of it on some thousand elements.
+    /// Whether the conditions hold up to their possible round-off: no solver could do better. With a prescribed force the approach is a mean over C,
+    /// a sum of many numbers. In 60000 cases results that stagnate are within 4 times the round-off of one e on small contact areas, and within 13
+    /// times on some thousand elements.
     pub fn holds_to_rounding(&self, case: &Case, found: &Outputs) -> bool {
         let (tolerance, rounding) = (case.how.tolerance, (10.0 + self.count.sqrt()) * self.rounding);
         let pressures = found.p.iter().sum::<f64>();
@@ -110,7 +110,7 @@ impl Measures {
     }
 }
 
-/// The sum of two halves: n equal terms, one by one, would be off by some n eps/4 of it.
+/// The sum by halves: a sum of n equal terms one by one would have an error of some n eps/4.
 pub fn pairwise(values: &[f64]) -> f64 {
     match values.len() {
         0..=64 => values.iter().sum(),

@@ -1,4 +1,4 @@
-//! u = A p for every effect, and what rounding may do to it: direct sums, or products by the campaign's own transform where those are long.
+//! u = A p for every effect, and its possible round-off: direct sums, or for long products the campaign's own transform.
 
 use std::cell::OnceCell;
 
@@ -7,29 +7,29 @@ use crate::fft::Convolution;
 use crate::grid::Grid;
 use crate::half_space::{free, periodic, Quadrant};
 
-/// Where the coefficients come from.
+/// The source of the coefficients.
 enum Coefficients<'a> {
     HalfSpace(Quadrant),
     Table(&'a OwnCoefficients),
     RowTables(&'a OwnCoefficients),
 }
 
-/// A.
+/// The operator A.
 pub struct Operator<'a> {
     grid: Grid,
     effects: &'a Effects,
     coefficients: Coefficients<'a>,
-    /// 2-norm of all coefficients that a transform of the operator holds.
+    /// The 2-norm of all coefficients in a transform of the operator.
     norm: f64,
-    /// Made when the first long product asks for it.
+    /// Made for the first long product.
     convolution: OnceCell<Convolution>,
 }
 
-/// Products of more terms are done by the transform.
+/// Products with more terms use the transform.
 const LONG: usize = 2_000_000;
 
 impl<'a> Operator<'a> {
-    /// Of a scene's effects; `c` is the bodies' compliance over pi.
+    /// The operator of a scene's effects; `c` is the compliance of the bodies over pi.
     pub fn new(grid: &Grid, c: f64, effects: &'a Effects) -> Operator<'a> {
         let Grid { mx, my, dx, dy } = *grid;
         let coefficients = match (&effects.influence, &effects.row_tables, effects.period) {
@@ -46,19 +46,19 @@ impl<'a> Operator<'a> {
             Coefficients::HalfSpace(quadrant) => &quadrant.values,
             Coefficients::Table(own) | Coefficients::RowTables(own) => &own.values,
         };
-        // Four quadrants.
+        // The norm of four quadrants.
         let norm = 2.0 * values.iter().map(|v| v * v).sum::<f64>().sqrt();
         Operator { grid: *grid, effects, coefficients, norm, convolution: OnceCell::new() }
     }
 
-    /// The coefficient of the middle element on itself, with its layer.
+    /// The self-influence of the middle element, with its layer.
     pub fn diagonal(&self) -> f64 {
         let (ix, iy) = (self.grid.mx / 2, self.grid.my / 2);
         let layer = self.effects.layer.as_ref().map_or(0.0, |layer| layer.at(iy * self.grid.mx + ix));
         let mut row = vec![0.0; self.grid.mx];
         self.add(ix, iy, iy, 1.0, &mut row);
         let own = row[ix] + layer;
-        // A single element of two periods displaces nothing.
+        // A single element with two periods has no displacement.
         if own > 0.0 {
             own
         } else {
@@ -66,7 +66,7 @@ impl<'a> Operator<'a> {
         }
     }
 
-    /// Adds what a pressure on `(jx, jy)` displaces in row iy.
+    /// Adds the displacements of row iy by a pressure on `(jx, jy)`.
     fn add(&self, jx: usize, jy: usize, iy: usize, pressure: f64, row: &mut [f64]) {
         let mx = self.grid.mx;
         match &self.coefficients {
@@ -87,7 +87,7 @@ impl<'a> Operator<'a> {
         }
     }
 
-    /// u = A p.
+    /// The product u = A p.
     pub fn displace(&self, p: &[f64]) -> Vec<f64> {
         let mut u = if self.is_long(p) { self.by_transform(p) } else { self.by_sums(p) };
         if let Some(layer) = &self.effects.layer {
@@ -96,7 +96,7 @@ impl<'a> Operator<'a> {
         u
     }
 
-    /// Whether the transform does the product. Tables per row are no convolution.
+    /// Whether the product uses the transform. Tables per row are no convolution.
     fn is_long(&self, p: &[f64]) -> bool {
         let terms = p.iter().filter(|p| **p != 0.0).count() * p.len();
         terms > LONG && !matches!(self.coefficients, Coefficients::RowTables(_))
@@ -123,7 +123,7 @@ impl<'a> Operator<'a> {
         u
     }
 
-    /// A product; with patches one for the loads of each.
+    /// A product by transforms; with patches one for the loads of each patch.
     fn by_transform(&self, p: &[f64]) -> Vec<f64> {
         let Grid { mx, my, .. } = self.grid;
         let convolution = self.convolution.get_or_init(|| match &self.coefficients {
@@ -145,9 +145,9 @@ impl<'a> Operator<'a> {
         u
     }
 
-    /// What rounding may do to a displacement: of the coefficients here, `n` terms here, and of a product by FFT there, whose error
-    /// is at most some units of round-off times log2 of its length times the 2-norms of both factors (Higham, Accuracy and Stability
-    /// of Numerical Algorithms, section 24.1).
+    /// The possible round-off of a displacement: of the campaign's coefficients and `n` terms, and of the library's product by FFT. The error of the
+    /// latter is at most some units of round-off times log2 of its length times the 2-norms of both factors (Higham, Accuracy and Stability of
+    /// Numerical Algorithms, section 24.1).
     pub fn rounding(&self, p: &[f64]) -> f64 {
         let (sum, squares) = p.iter().fold((0.0, 0.0), |(sum, squares), p| (sum + p.abs(), squares + p * p));
         let coefficients = match &self.coefficients {
@@ -160,13 +160,13 @@ impl<'a> Operator<'a> {
             None => 0.0,
         };
         let largest = p.iter().fold(0.0, |largest: f64, p| largest.max(p.abs()));
-        // As much again where the transform here does the product.
+        // Twice that if the campaign also uses its transform.
         let transforms = if self.is_long(p) { 2.0 } else { 1.0 };
         let steps = transforms * (4.0 + (4.0 * p.len() as f64).log2());
         // A layer of the same value everywhere is a part of the coefficients.
         let norms = (self.norm + layer) * squares.sqrt();
         let rounding = coefficients * sum + f64::EPSILON * (4.0 * steps * norms + layer * largest);
-        // Coefficients near the largest double have a norm that is none.
+        // The norm of coefficients near the largest double overflows.
         rounding.min(1e300)
     }
 }
@@ -178,7 +178,7 @@ mod tests {
 
     const GRID: Grid = Grid { mx: 5, my: 4, dx: 0.5, dy: 0.7 };
 
-    /// A table and row tables of the half-space displace as the half-space does.
+    /// A table and row tables of the half-space have the displacements of the half-space.
     #[test]
     fn the_three_kinds_of_coefficients_agree() {
         let Grid { mx, my, dx, dy } = GRID;
@@ -199,7 +199,7 @@ mod tests {
             Effects { row_tables: Some(row_tables), ..Effects::default() },
         ] {
             let found = Operator::new(&GRID, 1.0, &effects).displace(&p);
-            // 20 terms.
+            // The round-off of 20 terms.
             assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 20.0 * f64::EPSILON * b), "{found:?}");
         }
     }
@@ -226,7 +226,7 @@ mod tests {
         }
     }
 
-    /// The sum as it is written, element by element.
+    /// Patches and a layer by their formulas, element by element.
     #[test]
     fn patches_and_a_layer_enter_as_their_formulas_say() {
         let mut random = Random::new(2);

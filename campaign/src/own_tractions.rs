@@ -1,10 +1,11 @@
-//! Tangential coefficients of the caller's own: tables over offsets, of like bodies that are softer or that relax and roll, and tables per loaded row.
+//! The caller's own tangential coefficients: tables over offsets, for softer like bodies or for bodies that relax and roll, and tables per loaded
+//! row.
 //!
-//! All are made of the coefficients of half-spaces, so that the campaign's products (`tangential`) know them:
+//! All are made from the coefficients of half-spaces, so that the campaign's products (`tangential`) can use them:
 //!
 //! ```text
 //! even:    f A
-//! uneven:  A + c sum over n >= 0 of (1 - e) e^n A(x + n)        in steady rolling towards +x: material behind has given way; or seen in a mirror
+//! uneven:  A + c sum over n >= 0 of (1 - e) e^n A(x + n)        in steady rolling towards +x: softer behind the contact; or mirrored in x
 //! rows:    d_i A d_j, of the rows i and j; pressures alike
 //! ```
 
@@ -16,12 +17,12 @@ use crate::half_space::free;
 use crate::init::initialised;
 use crate::random::Random;
 
-/// Elements that a step of rolling goes at most.
+/// The largest number of elements in a step of rolling.
 pub const STEP: usize = 3;
-/// Of what is left of an uneven table behind its end.
+/// The relative size of an uneven table at its end.
 const NOTHING: f64 = 1e-18;
 
-/// What the tables are made by.
+/// The rule by which the tables are made.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     Even { factor: f64 },
@@ -38,11 +39,11 @@ pub struct OwnTractions {
     values: [Vec<f64>; 3],
 }
 
-/// Where half-spaces have coefficients xx, yy and xy, by whole elements.
+/// The half-space's coefficients xx, yy and xy at offsets in elements.
 pub type At<'a> = &'a dyn Fn(i64, i64) -> [f64; 3];
 
 impl Kind {
-    /// Any.
+    /// A random kind.
     pub fn random(random: &mut Random, grid: &Grid) -> Kind {
         match random.integer(0, 3) {
             0 => Kind::Even { factor: random.decades(0.1, 10.0) },
@@ -55,7 +56,7 @@ impl Kind {
         }
     }
 
-    /// In which uneven ones roll.
+    /// The rolling direction of uneven tables.
     pub fn direction(&self) -> f64 {
         match self {
             Kind::Uneven { back: true, .. } => std::f64::consts::PI,
@@ -63,7 +64,7 @@ impl Kind {
         }
     }
 
-    /// The coefficients of a row of offsets from `first` on.
+    /// The coefficients of a row of offsets, beginning with `first`.
     pub fn row(&self, ky: i64, first: i64, count: usize, at: At<'_>) -> Vec<[f64; 3]> {
         let plain = || (0..count as i64).map(|k| at(first + k, ky));
         match *self {
@@ -90,7 +91,7 @@ impl Kind {
 }
 
 impl OwnTractions {
-    /// For a grid and steps of a few elements.
+    /// Tables for a grid and steps of a few elements.
     pub fn new(kind: Kind, grid: &Grid, at: At<'_>) -> OwnTractions {
         let (cx, is_by_row) = (grid.mx + STEP + 1, matches!(kind, Kind::Rows { .. }));
         let cy = if is_by_row { grid.my } else { grid.my + 1 };
@@ -109,7 +110,7 @@ impl OwnTractions {
         OwnTractions { kind, cx, cy, values }
     }
 
-    /// The coefficients of pressures of tables per loaded row; none: those of the bodies.
+    /// The coefficients of pressures that belong to tables per loaded row, or None: those of the bodies.
     pub fn of_pressures(&self, grid: &Grid, c: f64) -> Option<OwnCoefficients> {
         let Kind::Rows { d } = &self.kind else { return None };
         let (cx, cy) = (grid.mx, grid.my);
@@ -129,7 +130,7 @@ pub struct Structs {
 }
 
 impl Structs {
-    /// That point to these tables.
+    /// Structs that point to these tables.
     pub fn new(own: &OwnTractions) -> Box<Structs> {
         let table = |values: &Vec<f64>| {
             let mut table = initialised(contact_normal_influence_init);
@@ -144,7 +145,7 @@ impl Structs {
         Box::new(Structs { tables: own.values.each_ref().map(table), rows: own.values.each_ref().map(rows) })
     }
 
-    /// Of a friction.
+    /// Sets the tables of a friction struct.
     pub fn put(&self, own: &OwnTractions, friction: &mut contact_normal_friction) {
         match own.kind {
             Kind::Rows { .. } => friction.row_tables = self.rows.each_ref().map(|rows| &raw const *rows),

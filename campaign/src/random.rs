@@ -1,16 +1,16 @@
-//! Numbers that a seed determines.
+//! Random numbers that a seed determines.
 
 /// splitmix64.
 #[derive(Clone)]
 pub struct Random(u64);
 
 impl Random {
-    /// Of one seed. The numbers of neighbouring seeds have nothing in common.
+    /// The numbers of a seed. Those of neighbouring seeds are independent.
     pub fn new(seed: u64) -> Random {
         Random(seed)
     }
 
-    /// Numbers beside these, which stay what they were.
+    /// A separate sequence, which does not change these numbers.
     pub fn beside(&self, salt: u64) -> Random {
         Random(self.0 ^ salt)
     }
@@ -42,7 +42,7 @@ impl Random {
         a + (self.next() % (b - a + 1) as u64) as usize
     }
 
-    /// True in this part of all calls.
+    /// True with this probability.
     pub fn chance(&mut self, part: f64) -> bool {
         self.uniform() < part
     }

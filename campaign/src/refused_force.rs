@@ -1,18 +1,19 @@
-//! Forces on unlike bodies that are refused: tractions change what the pressures carry, so that no closed form says what is too much. No creepage may carry
-//! more than such a force.
+//! Refused forces on unlike bodies: tractions change the pressures, so that no closed form gives the greatest force. No creepage may carry more than
+//! a refused force.
 
 use contact_normal::ffi::*;
 
 use crate::friction_call::{call, frictionless};
 use crate::friction_case::Case;
 
-/// Creepages that are tried: from a hundredth of what full slip displaces to a thousand times it, this many a decade.
+/// The decades of the creepages that are tried, from a hundredth to a thousand times the displacement of full slip, and their number per decade.
 const DECADES: (i32, i32) = (-2, 3);
 const A_DECADE: i32 = 8;
-/// A force is reached if it is exceeded by this part, beside the tolerances of two solves: tractions before the step may differ.
+/// A force counts as reached if it is exceeded by this part, in addition to the tolerances of two solves: previous tractions may differ.
 const MORE: f64 = 1e-3;
 
-/// A creepage that carries more than the force that is given in one direction, and what it carries. None: there is no such creepage, or no such question.
+/// A creepage that carries more than the given force in one direction, and its force. None: there is no such creepage, or the question does not
+/// arise.
 pub fn exceeded(case: &Case) -> Option<(f64, f64)> {
     let Case { place, slide, stop, .. } = case;
     let k = match [0, 1].map(|k| slide.is_force(k)) {

@@ -1,8 +1,8 @@
-//! Bodies that relax: a random scene, random branches and a random path of loads on one handle, each step certified.
+//! Viscoelastic bodies: a random scene, random branches and a random path of loads on one handle. Each step is certified.
 //!
-//! A body is a spring with dashpots, `u = w + sum of r_k q_k` and `t_k dq_k/dt = u - q_k`, where w is what it gives way at once and `r_k = G_k/G`. In a step q
-//! is linear in q before it, in w before it and in w after it. So displacements are `u = s A p + H`, with a number s and what is left of the steps
-//! before, H: an elastic scene with the distances h + H and a compliance of s, whose rules are those of every scene (`rules`).
+//! A body is a spring with dashpots, `u = w + sum of r_k q_k` and `t_k dq_k/dt = u - q_k`. Here w is the instantaneous displacement and `r_k =
+//! G_k/G`. In a step the new q is linear in the old q, in the old w and in the new w. So displacements are `u = s A p + H`, with a number s and the
+//! history H of the earlier steps. This is an elastic scene with the distances h + H and a compliance of s, with the rules of every scene (`rules`).
 
 use contact_normal::ffi::*;
 
@@ -18,30 +18,30 @@ use crate::rules;
 use crate::scales::Scales;
 use crate::verdict::Verdict;
 
-/// What the history of a step may be off, over its largest value: of exponentials of times that differ by a thousand, here and there.
+/// The error of the history of a step, relative to its largest value, of exponentials with times that differ by a thousand, in the library and here.
 const ACCURACY: f64 = 1e-11;
-/// How many times larger products of earlier steps, and what rounding did to them, are in the history: bodies give way up to twenty times as much in the end.
+/// The largest factor of earlier products, and of their round-off, in the history: the final compliance is up to twenty times the instantaneous one.
 const GROWS: f64 = 32.0;
-/// Branches of a body at most.
+/// The largest number of branches of a body.
 const MOST: usize = 3;
-/// Terms of the series of an exponential, of matrices whose norm is 1/2.
+/// The number of terms of the exponential series, for matrices of norm 1/2.
 const TERMS: u32 = 18;
 
-/// A body that relaxes.
+/// A viscoelastic body.
 #[derive(Clone)]
 struct Body {
-    /// Of the compliance at once of both.
+    /// The share of the body in the instantaneous compliance.
     share: f64,
     modulus: Vec<f64>,
-    /// Moduli over that at once.
+    /// The moduli of branches relative to the instantaneous one.
     r: Vec<f64>,
     time: Vec<f64>,
-    /// `[element][branch]`, and w.
+    /// q as `[element][branch]`, and w.
     q: Vec<Vec<f64>>,
     w: Vec<f64>,
 }
 
-/// q after a step: by q before, row by row, by w before and by w after.
+/// q after a step: linear in the old q, row by row, in the old w and in the new w.
 struct Map {
     by_q: Vec<Vec<f64>>,
     by_before: Vec<f64>,
@@ -55,7 +55,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 impl Body {
     fn random(random: &mut Random, (share, g): (f64, f64), unit: f64, n: usize) -> Body {
         let count = if g.is_finite() && share > 0.0 { random.integer(0, MOST) } else { 0 };
-        // A fluid of one branch: the others keep something.
+        // A body of one branch may be a fluid; the others keep a final modulus.
         let total = if count == 1 && random.chance(0.3) { 1.0 } else { random.between(0.05, 0.95) };
         let parts: Vec<f64> = (0..count).map(|_| random.between(0.1, 1.0)).collect();
         let sum: f64 = parts.iter().sum();
@@ -85,7 +85,7 @@ impl Body {
                 let end = (after + dot(&self.r, &left)) / (1.0 - dot(&self.r, &part));
                 (0..n).map(|k| left[k] + part[k] * end).collect()
             }
-            // CREEP: q, w and the change of w in the step, whose rates are linear.
+            // CREEP: the rates of q, w and the change of w in the step are linear.
             _ => {
                 let mut state: Vec<f64> = q.iter().copied().chain([before, after - before]).collect();
                 let mut rates = vec![vec![0.0; n + 2]; n + 2];
@@ -94,7 +94,7 @@ impl Body {
                     rates[k][n] = steps[k];
                 }
                 rates[n][n + 1] = 1.0;
-                // A power of two of parts, in each of which the series ends soon.
+                // The step is divided into a power of two of parts, in each of which the series converges fast.
                 let norm = rates.iter().map(|row| row.iter().map(|value| value.abs()).sum()).fold(0.5, f64::max);
                 let parts = 2f64.powi((2.0 * norm).log2().ceil() as i32);
                 for _ in 0..parts as u64 {
@@ -133,7 +133,7 @@ impl Body {
         (1.0 + dot(&self.r, &map.by_after), self.q.iter().zip(&self.w).map(|(q, w)| of(q, *w)).collect())
     }
 
-    /// The step is done, with these products A p.
+    /// Ends the step, with these products A p.
     fn keep(&mut self, map: &Map, products: &[f64]) {
         for ((q, w), product) in self.q.iter_mut().zip(&mut self.w).zip(products) {
             let end = self.share * product;
@@ -143,14 +143,15 @@ impl Body {
     }
 }
 
-/// The status of each step, and what was not kept.
+/// The status of each step, and the broken promises.
 pub struct Run {
     pub case: Case,
     pub statuses: Vec<i32>,
     pub verdict: Verdict,
 }
 
-/// What goes with bodies that relax: all but layers between them; of coatings and coefficients that know no bodies those whose compliance relaxes as a whole.
+/// Leaves out the effects that viscoelastic bodies exclude: layers between them, and coatings and own coefficients, except those of bodies that relax
+/// as a whole.
 fn suited(mut case: Case) -> Case {
     let effects = &mut case.effects;
     (effects.layer, effects.influence, effects.row_tables, effects.coating) = (None, None, None, None);
@@ -161,8 +162,8 @@ fn suited(mut case: Case) -> Case {
     case
 }
 
-/// Now and then layers on rigid bodies, or the caller's own coefficients, of one body beside a rigid one, or of two that relax alike: the materials at the
-/// surfaces.
+/// Now and then sets layers on rigid bodies, or own coefficients, for one body with a rigid one, or for two equal viscoelastic bodies. Returns the
+/// materials at the surfaces.
 fn take_coefficients(case: &mut Case, random: &mut Random) -> Option<([f64; 2], [f64; 2])> {
     let g = case.shear_modulus.into_iter().find(|g| g.is_finite()).filter(|_| random.chance(0.35))?;
     let (is_alone, nu, grid) = (random.chance(0.5), random.between(0.0, 0.5), case.grid);
@@ -185,7 +186,7 @@ fn take_coefficients(case: &mut Case, random: &mut Random) -> Option<([f64; 2], 
     Some((modulus, [nu; 2]))
 }
 
-/// A path of two to six steps.
+/// Runs a path of two to six steps.
 pub fn run(seed: u64) -> Run {
     let random = &mut Random::new(seed ^ 0x5109_c0de);
     let mut case = suited(Case::new(seed));
@@ -235,7 +236,7 @@ pub fn run(seed: u64) -> Run {
     Run { case, statuses, verdict }
 }
 
-/// The rules of the elastic scene that a step is.
+/// Checks a step by the rules of its elastic scene.
 fn check(case: &Case, (s, left, rounding): (f64, &[f64], f64), found: &Outputs) -> Verdict {
     let mut elastic = case.clone();
     elastic.shear_modulus = case.shear_modulus.map(|g| g / s);
@@ -258,7 +259,7 @@ fn check(case: &Case, (s, left, rounding): (f64, &[f64], f64), found: &Outputs) 
 mod tests {
     use super::*;
 
-    /// Held displacements and held pressures of one branch, by closed forms; by two branches that are one; and a jump.
+    /// Constant displacements and constant pressures of one branch, by closed forms; two branches that equal one; and a jump.
     #[test]
     fn one_branch_relaxes_and_creeps_by_exponentials() {
         let body = |r: &[f64], time: &[f64]| Body {
@@ -272,7 +273,7 @@ mod tests {
         let (r, t, dt): (f64, f64, f64) = (0.7, 3.0, 2.0);
         for parts in [vec![r], vec![0.3 * r, 0.7 * r]] {
             let times = vec![t; parts.len()];
-            // Of q = 0 and u = 1 throughout w begins at 1 and falls to 1 - r (1 - exp(-dt/t)).
+            // With q = 0 and a constant u = 1 w falls from 1 to 1 - r (1 - exp(-dt/t)).
             let fade = 1.0 - (-dt / t).exp();
             let held = body(&parts, &times).after(
                 CONTACT_NORMAL_FORM_RELAXATION,
@@ -290,7 +291,7 @@ mod tests {
             let jump = one.map(CONTACT_NORMAL_FORM_CREEP, 0.0);
             one.keep(&jump, &[1.0]);
             let (s, left) = one.left(&one.map(CONTACT_NORMAL_FORM_CREEP, dt));
-            // Held pressures: s + H is what has crept.
+            // Constant pressures: s + H is the displacement by creep.
             assert!((s + left[0] - (1.0 + r * expected)).abs() <= 1e-13, "{s} {left:?}");
         }
         let stiff = body(&[0.5, 0.4], &[1e-3, 1e3]).after(CONTACT_NORMAL_FORM_CREEP, 1.0, &[0.0, 0.0], (1.0, 1.0));

@@ -1,4 +1,4 @@
-//! A case from the dump of a call (`options->dump`), to be judged by the campaign's own oracles.
+//! A case from the dump of a call (`options->dump`), checked by the campaign's own oracles.
 
 use contact_normal::ffi::dump::Dump;
 use contact_normal::ffi::*;
@@ -12,7 +12,7 @@ use crate::run::Run;
 use crate::verdict::Verdict;
 use crate::{rules, surface};
 
-/// Solves the scene of a dump anew, from where its call began, and checks the answer.
+/// Solves the scene of a dump again, with the start of its call, and checks the result.
 pub fn run(dump: &Dump) -> Result<Run, String> {
     let case = case(dump)?;
     let found = call::solve(&case);
@@ -52,11 +52,11 @@ fn case(dump: &Dump) -> Result<Case, String> {
     })
 }
 
-/// What a dump holds.
+/// Reads the arrays and structs of a dump.
 struct Reader<'a>(&'a Dump);
 
 impl Reader<'_> {
-    /// Values of which there must be so many.
+    /// `count` values, or any number of them.
     fn doubles(&self, name: &str, at: *const f64, count: Option<usize>) -> Result<Vec<f64>, String> {
         let values = count.and_then(|count| self.0.doubles_at(at, count));
         values.ok_or_else(|| format!("{name} is not in the file, or shorter than the grid asks for"))
@@ -110,7 +110,7 @@ impl Reader<'_> {
         if let Some(values) = self.0.doubles("handle.row_tables") {
             effects.row_tables = Some(OwnCoefficients { cx: grid.mx, cy: grid.my, values });
         }
-        // No oracle says whether they are those of an elastic body.
+        // The oracle does not decide whether they are those of an elastic body.
         effects.unsymmetric = effects.influence.is_some() || effects.row_tables.is_some();
         effects.coating = coating(scene);
         Ok(effects)

@@ -1,4 +1,4 @@
-//! What holds for every answer, by an oracle that knows nothing of the library.
+//! The rules for every result, by an oracle that is independent of the library.
 
 use contact_normal::ffi::*;
 
@@ -12,7 +12,7 @@ fn failure(promise: &'static str, details: String) -> Vec<Failure> {
     vec![Failure { promise, details }]
 }
 
-/// Checks an answer: what does not hold, and why an answer that is no solution passes.
+/// Checks a result: the broken promises, and the excuse of a result that is no solution.
 pub fn check(case: &Case, found: &Outputs) -> Verdict {
     if found.status < 0 {
         return refused(case, found);
@@ -28,7 +28,7 @@ pub fn check(case: &Case, found: &Outputs) -> Verdict {
     }
 }
 
-/// Why a solve may stop early; AUTO's of an elastic body may not.
+/// The excuse of a solve that stops early; AUTO has none for an elastic body.
 fn excuse(case: &Case, found: &Outputs, m: &Measures) -> Option<&'static str> {
     let how = &case.how;
     match found.status {
@@ -48,12 +48,12 @@ fn excuse(case: &Case, found: &Outputs, m: &Measures) -> Option<&'static str> {
     }
 }
 
-/// Whether what is left of the conditions is round-off.
+/// Whether the residuals of the conditions are round-off.
 pub fn is_at_rounding(case: &Case, found: &Outputs) -> bool {
     Measures::of(case, found).holds_to_rounding(case, found)
 }
 
-/// What holds of pressures whose problem changed after they were found: numbers, bounds, u = A p.
+/// The rules for pressures whose problem changed after they were found: finite values, bounds, u = A p.
 pub fn is_admissible(case: &Case, found: &Outputs) -> Vec<Failure> {
     let mut failures = sound(case, found);
     if failures.is_empty() {
@@ -65,7 +65,7 @@ pub fn is_admissible(case: &Case, found: &Outputs) -> Vec<Failure> {
     failures
 }
 
-/// Checks what an answer with status >= 0 says, and asks for no success.
+/// Checks the values of a result with status >= 0, without requiring success.
 pub fn is_true(case: &Case, found: &Outputs) -> Vec<Failure> {
     let mut failures = sound(case, found);
     if !failures.is_empty() {
@@ -90,7 +90,7 @@ pub fn is_true(case: &Case, found: &Outputs) -> Vec<Failure> {
     failures
 }
 
-/// Numbers, no tension, limits to the last bit, nothing outside.
+/// Checks finite values, no tension, limits to the last bit, and no pressure outside C.
 fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
     let n = case.grid.len();
     let status = found.status;
@@ -146,7 +146,7 @@ fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
     if !(0..n).all(known) {
         failures.extend(failure("contact says what an element is", format!("status {status}")));
     }
-    // What has no surface carries nothing, whatever its code is.
+    // An element without a surface has no pressure, whatever its code is.
     if (0..n).any(|i| case.h[i].is_infinite() && found.p[i] != 0.0) {
         failures.extend(failure("p = 0 where there is no surface", format!("status {status}")));
     }
@@ -165,7 +165,7 @@ fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
     failures
 }
 
-/// Status OK.
+/// Checks a result with status OK.
 fn solved(case: &Case, found: &Outputs, m: &Measures, sizes: &str) -> Vec<Failure> {
     let mut failures = Vec::new();
     let tolerance = case.how.tolerance;
@@ -200,7 +200,7 @@ fn solved(case: &Case, found: &Outputs, m: &Measures, sizes: &str) -> Vec<Failur
         let details = format!("reported {:.2e}, no element in contact", found.report.normal.residual);
         failures.extend(failure("the report's residual is the residual", details));
     }
-    // Two sums of the same numbers, and a residual whose e is off by rounding.
+    // Two sums of the same numbers, and a residual whose e has round-off.
     let rounding = m.rounding * m.count.sqrt() / m.distance;
     if m.distance > 0.0 && !((found.report.normal.residual - m.relative()).abs() <= rounding + 1e-9 * m.relative()) {
         let details = format!("reported {:.2e}, {sizes}", found.report.normal.residual);
@@ -209,11 +209,11 @@ fn solved(case: &Case, found: &Outputs, m: &Measures, sizes: &str) -> Vec<Failur
     failures
 }
 
-/// Status > 0: the best iterate.
+/// Checks a result with status > 0: the best iterate.
 fn stopped(case: &Case, found: &Outputs, m: &Measures) -> Vec<Failure> {
     let status = found.status;
     let mut failures = Vec::new();
-    // p = 0 has 1 over any C.
+    // p = 0 has a residual of 1 over any C.
     if matches!(case.load, Load::Approach(_)) && !m.residual_holds(1.0) {
         failures.extend(failure("stopped: no worse than p = 0", m.text(found)));
     }
@@ -223,7 +223,7 @@ fn stopped(case: &Case, found: &Outputs, m: &Measures) -> Vec<Failure> {
     failures
 }
 
-/// Status < 0.
+/// Checks a refusal, with status < 0.
 fn refused(case: &Case, found: &Outputs) -> Verdict {
     let mut verdict = Verdict::default();
     let told = || format!("{}: {}", found.status, found.message);
@@ -255,7 +255,7 @@ pub fn reason(case: &Case, status: i32) -> Option<&'static str> {
         CONTACT_NORMAL_NOT_POSITIVE_DEFINITE => {
             &[(effects.indefinite || effects.unsymmetric, "refused: coefficients of no elastic body")]
         }
-        // Pressures below 0 are no guess, if the library says so.
+        // The library may refuse a guess with negative pressures.
         CONTACT_NORMAL_INVALID_ARGUMENT => {
             let negative = how.given.as_ref().is_some_and(|given| given.iter().any(|&p| p < 0.0));
             &[(negative, "refused: a guess below 0")]
@@ -265,7 +265,7 @@ pub fn reason(case: &Case, status: i32) -> Option<&'static str> {
     reasons.iter().find(|(holds, _)| *holds).map(|(_, why)| *why)
 }
 
-/// A force that no pressures within the limit carry. The library adds as many numbers in another order.
+/// Whether no pressures within the limit carry the force. The library adds the numbers in another order.
 fn exceeds_limit(case: &Case) -> bool {
     let Load::Force(force) = case.load else { return false };
     case.effects.limit.as_ref().is_some_and(|limit| {
@@ -274,7 +274,7 @@ fn exceeds_limit(case: &Case) -> bool {
     })
 }
 
-/// An approach in full contact where the mean displacement is zero.
+/// Whether an approach leads to full contact, for which the mean displacement is zero.
 fn is_in_full_contact(case: &Case) -> bool {
     let Load::Approach(approach) = case.load else { return false };
     let finite = || case.h.iter().filter(|h| h.is_finite());

@@ -7,28 +7,28 @@ use crate::random::Random;
 use crate::verdict::Verdict;
 use crate::{accuracy, batch, call, friction, measured, relaxing, rules, sequence, set_influence, stress};
 
-/// What came of one case.
+/// The result of one case.
 pub struct Run {
     pub case: Case,
     pub statuses: Vec<i32>,
-    /// What was asked beside the case, and the statuses of that.
+    /// The further calls of the case, and their statuses.
     pub beside: Option<(String, Vec<i32>)>,
     pub verdict: Verdict,
-    /// Products of AUTO from nothing, of a case that it may take its time for: on all grids, in products on the finest.
+    /// Products of AUTO without a guess, for a case without limits: those of all grids, in products on the finest.
     pub products: Option<f64>,
-    /// Of the processor.
+    /// The processor's seconds.
     pub seconds: f64,
 }
 
-/// Before the details of a failure that is none of the case's own.
+/// The prefix of failures in the further calls.
 pub const BESIDE: &str = "beside: ";
-/// AUTO that takes more products than this is counted, where it ends OK, too.
+/// AUTO with more products than this is counted, also if it ends OK.
 const MANY_PRODUCTS: f64 = 200.0;
 
-/// A case of the campaign's sizes that takes more seconds of the processor hangs. (The largest take some.)
+/// A case that takes more seconds of the processor hangs. (The largest cases take some seconds.)
 const TOO_LONG: f64 = 60.0;
 
-/// Seconds that the processor worked for this process, whatever else it has to do.
+/// The processor's seconds of this process, whatever the load of the machine.
 fn seconds() -> f64 {
     // SAFETY: a struct of two integers.
     let mut time: libc::timespec = unsafe { std::mem::zeroed() };
@@ -37,7 +37,7 @@ fn seconds() -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Runs the case of a seed: one in twenty-five is of what people bring.
+/// Runs the case of a seed: one in 25 has a scene like those of measured surfaces.
 pub fn ordinary(seed: u64) -> Run {
     if Random::new(seed ^ 0x0b12_76ed).chance(0.04) {
         return measured(seed);
@@ -45,7 +45,7 @@ pub fn ordinary(seed: u64) -> Run {
     run(Case::new(seed))
 }
 
-/// Runs the case of what people bring.
+/// Runs the case of a seed with a scene like those of measured surfaces.
 pub fn measured(seed: u64) -> Run {
     run(measured::case(seed))
 }
@@ -76,7 +76,7 @@ fn ask(run: &mut Run) {
     beside(run);
 }
 
-/// One call, and the same again.
+/// Makes one call, and repeats it.
 fn single(run: &mut Run) {
     let case = &run.case;
     let found = call::solve(case);
@@ -89,17 +89,17 @@ fn single(run: &mut Run) {
             run.verdict.excuse("AUTO took more than 200 products");
         }
     }
-    // Large ones now and then.
+    // Large cases are repeated now and then.
     if case.grid.len() < 5000 || case.seed % 4 == 0 {
         let same = call::solve(case).bits() == found.bits();
         run.verdict.unless(same, "the same call twice has the same bits", String::new);
     }
 }
 
-/// What some seeds are asked beside their case.
+/// Makes the further calls of some seeds.
 fn beside(run: &mut Run) {
     let case = &run.case;
-    // By numbers of their own: those of the case stay what they were.
+    // A separate sequence, so that the random numbers of the case do not change.
     let random = &mut Random::new(case.seed ^ 0x00be_51de);
     let verdict = match random.uniform() {
         u if u < 0.04 => stress::check(random),

@@ -1,14 +1,14 @@
-//! Of what size the numbers of a scene are, and a limit of the pressures by that.
+//! The scales of the numbers of a scene, and a limit of the pressures by them.
 
 use crate::effects::{Effects, Values};
 use crate::grid::{Grid, Load};
 use crate::operator::Operator;
 use crate::random::Random;
 
-/// Of what size a scene's distances and pressures are.
+/// The scales of a scene's distances and pressures.
 pub struct Scales {
     pub lowest: f64,
-    /// Between the lowest and the highest point, or what a flat surface has instead.
+    /// The difference of the highest and the lowest point, or a length for a flat surface.
     pub depth: f64,
     pub pressure: f64,
 }
@@ -24,7 +24,7 @@ impl Scales {
     }
 }
 
-/// A limit: with a force one by which it is a part of the greatest, mostly near to all of it.
+/// A limit. With a force the limit is such that the force is a part of the greatest one, mostly nearly all of it.
 pub fn limit(random: &mut Random, scales: &Scales, load: Load, h: &[f64], grid: &Grid) -> Values {
     let shape: Vec<f64> = match random.chance(0.5) {
         true => vec![1.0; grid.len()],

@@ -10,13 +10,13 @@ use crate::random::Random;
 use crate::rules::{check, reason};
 use crate::verdict::Verdict;
 
-/// What happened, and the statuses on the way.
+/// The verdict, and the statuses of the calls.
 pub struct Found {
     pub statuses: Vec<i32>,
     pub verdict: Verdict,
 }
 
-/// What the handle may say that it holds.
+/// The result that the handle may hold.
 #[derive(Default)]
 struct Held {
     last: Option<Vec<f64>>,
@@ -63,7 +63,7 @@ fn remember(outputs: &Outputs, held: &mut Held, found: &mut Found) {
     }
 }
 
-/// One call that is certified; one that starts anew gives the bits of a call without a handle.
+/// A call that is certified; a call without a guess has the bits of one without a handle.
 fn solve(case: &Case, previous: bool, what: &str, handle: &mut Handle, held: &mut Held, found: &mut Found) {
     let outputs = handle.solve(case, previous);
     remember(&outputs, held, found);
@@ -83,7 +83,7 @@ fn spoil(case: &Case, random: &mut Random, handle: &mut Handle, found: &mut Foun
     let kind = random.integer(0, 3);
     match kind {
         0 => spoiled.h[case.grid.len() / 2] = f64::NAN,
-        // A fixed area may be pulled.
+        // With a fixed area a negative force is allowed.
         1 => spoiled.load = Load::Force(if case.how.fixed.is_some() { f64::NAN } else { -1.0 }),
         2 => spoiled.how.tolerance = -1.0,
         _ => spoiled.grid.dx *= 2.0,
@@ -96,7 +96,7 @@ fn spoil(case: &Case, random: &mut Random, handle: &mut Handle, found: &mut Foun
     }
 }
 
-/// The same effects with other values: used, or refused by name; never ignored.
+/// The same effects with other values must be used, or refused by name, and never ignored.
 fn change_effects(case: &Case, random: &mut Random, handle: &mut Handle, held: &mut Held, found: &mut Found) {
     let mut changed = case.clone();
     let own = case.operator().diagonal();
@@ -124,7 +124,7 @@ fn change_effects(case: &Case, random: &mut Random, handle: &mut Handle, held: &
     }
 }
 
-/// The handle holds the last complete result, or says that it has none.
+/// Checks that the handle holds the last complete result, or says that it has none.
 fn holds(handle: &Handle, held: &Held, n: usize, found: &mut Found) {
     let Some(p) = handle.pressures(n) else { return };
     let same = |of: &Option<Vec<f64>>| {

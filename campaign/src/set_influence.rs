@@ -1,4 +1,4 @@
-//! Other coefficients on a handle: used from then on, or refused and as if nothing had happened.
+//! Other coefficients on a handle: used from then on, or refused without any effect.
 
 use contact_normal::ffi::*;
 
@@ -10,7 +10,7 @@ use crate::random::Random;
 use crate::rules::check;
 use crate::verdict::Verdict;
 
-/// A handle that was set up without a table takes none.
+/// A handle that was set up without a table refuses one.
 fn without_table(case: &Case, own: &OwnCoefficients) -> Verdict {
     let Ok(mut handle) = Handle::new(case) else { return Verdict::default() };
     let status = handle.set_influence(own);
@@ -20,7 +20,7 @@ fn without_table(case: &Case, own: &OwnCoefficients) -> Verdict {
     Verdict::failed("a handle without a table takes none", format!("status {status}"))
 }
 
-/// A handle of a scene without a period, row tables, or a coating, whose coefficients change from solve to solve.
+/// A handle whose coefficients change from solve to solve, without a period, row tables, or a coating.
 pub fn run(case: &Case, random: &mut Random) -> Verdict {
     let named = &case.effects;
     if named.period.is_some() || named.row_tables.is_some() || named.coating.is_some() {
@@ -43,7 +43,7 @@ pub fn run(case: &Case, random: &mut Random) -> Verdict {
         let mut own = effects::table(random, &case.grid, c, (unsymmetric, false));
         let spoiled = random.chance(0.3);
         if spoiled {
-            // That of an element on itself: what is beyond the grid's reach is not read.
+            // The coefficient of an element on itself, because those beyond the grid are not read.
             let on_itself = own.cy * 2 * own.cx + own.cx;
             own.values[on_itself] = f64::NAN;
         }

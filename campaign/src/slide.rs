@@ -1,4 +1,4 @@
-//! How bodies slide: motion, creepages or forces, and what was before.
+//! The sliding of bodies: motion, creepages or forces, and previous tractions.
 
 use contact_normal::ffi::*;
 
@@ -6,11 +6,11 @@ use crate::grid::Grid;
 use crate::own_tractions::{Kind, STEP};
 use crate::random::Random;
 
-/// How they slide.
+/// The sliding of bodies.
 #[derive(Clone, Debug)]
 pub struct Slide {
     pub mu: Vec<f64>,
-    /// Given as one number.
+    /// Whether the coefficient is given as one number.
     pub uniform: bool,
     pub motion: i32,
     pub prescribed: [i32; 2],
@@ -18,17 +18,17 @@ pub struct Slide {
     pub amount: [f64; 2],
     pub spin: f64,
     pub spin_centre: [f64; 2],
-    /// As it is given: 0 is dx.
+    /// The distance as given: 0 stands for dx.
     pub distance: f64,
     pub direction: f64,
     pub previous: Option<[Vec<f64>; 2]>,
     pub rigid: Option<[Vec<f64>; 2]>,
-    /// Whether the derivatives of the forces are asked for.
+    /// Whether the derivatives of the forces are wanted.
     pub sensitivities: bool,
 }
 
 impl Slide {
-    /// Steady rolling without creepages, that way in which the bodies of these tables roll.
+    /// Steady rolling without creepages, in the rolling direction of these tables.
     pub fn nothing(kind: &Kind, n: usize) -> Slide {
         Slide {
             direction: kind.direction(),
@@ -46,7 +46,7 @@ impl Slide {
         }
     }
 
-    /// Becomes a motion that tables serve: steps of whole elements along x, that way in which the bodies roll.
+    /// Becomes a motion that the tables allow: steps of whole elements along x, in their rolling direction.
     pub fn fit(&mut self, kind: &Kind, random: &mut Random, grid: &Grid) {
         self.direction = random.pick(&[0.0, std::f64::consts::PI]);
         if matches!(kind, Kind::Uneven { .. }) {
@@ -59,18 +59,18 @@ impl Slide {
         self.is_force(0) || self.is_force(1)
     }
 
-    /// Whether the force is given in that direction.
+    /// Whether the force is given in this direction.
     pub fn is_force(&self, k: usize) -> bool {
         self.prescribed[k] == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE
     }
 
-    /// The size of the forces that are given; 0 where none is.
+    /// The size of the given forces; 0 without one.
     pub fn force(&self) -> f64 {
         let [x, y] = [0, 1].map(|k| if self.is_force(k) { self.amount[k] } else { 0.0 });
         x.hypot(y)
     }
 
-    /// The length rolled in a step; 1 of a shift, whose creepages are lengths.
+    /// The rolling distance of a step; 1 for a shift, whose creepages are lengths.
     pub fn length(&self, grid: &Grid) -> f64 {
         match self.motion {
             CONTACT_NORMAL_MOTION_SHIFT => 1.0,
@@ -79,7 +79,7 @@ impl Slide {
         }
     }
 
-    /// Where particles were before the step; of a shift here.
+    /// The offset of the particles before the step; 0 for a shift.
     pub fn step(&self, grid: &Grid) -> [f64; 2] {
         if self.motion == CONTACT_NORMAL_MOTION_SHIFT {
             return [0.0; 2];
@@ -89,7 +89,7 @@ impl Slide {
         [self.length(grid) * clean(cosine), self.length(grid) * clean(sine)]
     }
 
-    /// The rigid slip of an element with the creepages of the report, and of what size its terms are.
+    /// The rigid slip of an element with the creepages of the report, and the scale of its terms.
     pub fn rigid_slip(&self, grid: &Grid, i: usize, creepage: [f64; 2]) -> ([f64; 2], f64) {
         let (step, length) = (self.step(grid), self.length(grid));
         let centre = |k: usize, m: usize, d: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;

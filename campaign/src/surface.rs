@@ -5,16 +5,16 @@ use std::f64::consts::PI;
 use crate::grid::Grid;
 use crate::random::Random;
 
-/// What the elements' centres look like: offsets from the middle of the grid, over its half width.
+/// The centres of the elements: offsets from the middle of the grid, over its half width.
 fn centres(mx: usize, my: usize) -> impl Iterator<Item = (f64, f64)> {
     let along = |i: usize, m: usize| (2 * i + 1) as f64 / m as f64 - 1.0;
     (0..mx * my).map(move |i| (along(i % mx, mx), along(i / mx, my)))
 }
 
-/// A name and h, of size about 1.
+/// A name and h, of order 1.
 pub fn any(random: &mut Random, grid: &Grid) -> (String, Vec<f64>) {
     let Grid { mx, my, .. } = *grid;
-    // On fine grids mostly noise: their coarser grids do not see its peaks.
+    // On fine grids mostly noise, whose peaks coarser grids do not resolve.
     let kind = if mx * my > 3000 && random.chance(0.5) { 3 } else { random.integer(0, 8) };
     let (name, mut h) = match kind {
         0 | 1 => ("paraboloid", paraboloid(random, mx, my)),
@@ -37,7 +37,7 @@ fn paraboloid(random: &mut Random, mx: usize, my: usize) -> Vec<f64> {
     centres(mx, my).map(|(x, y)| a * (x - x0).powi(2) + b * (y - y0).powi(2)).collect()
 }
 
-/// Cosines of random directions and phases whose amplitudes fall as the wave number to -(1 + Hurst exponent).
+/// Cosines of random directions and phases, with amplitudes that fall as the wave number to -(1 + Hurst exponent).
 fn self_affine(random: &mut Random, mx: usize, my: usize) -> Vec<f64> {
     let hurst = random.between(0.1, 1.0);
     let waves: Vec<_> = (0..40)

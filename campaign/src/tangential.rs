@@ -1,5 +1,5 @@
-//! Displacements by tractions and by pressures, of like and of unlike bodies, by coefficients of the campaign's own
-//! (`tangential_coefficients`). Tractions displace along the normal by `-(Axz qx + Ayz qy)`.
+//! Displacements by tractions and by pressures, for like and unlike bodies, by the campaign's own coefficients (`tangential_coefficients`). Tractions
+//! have displacements `-(Axz qx + Ayz qy)` along the normal.
 
 use std::cell::{Cell, OnceCell};
 use std::f64::consts::PI;
@@ -12,18 +12,18 @@ use crate::tangential_coating::{Coat, ACCURACY};
 pub use crate::tangential_coefficients::Vector;
 use crate::tangential_coefficients::{Compliance, Entry};
 
-/// Products of more terms are done by the transform.
+/// Products with more terms use the transform.
 const LONG: usize = 300_000;
 
-/// Coefficients between the elements of a grid, displaced by so many lengths.
+/// Coefficients between the elements of a grid and places with an offset from them.
 pub struct Operator {
     grid: Grid,
-    /// Of offsets `-(m - 1)..m`.
+    /// The coefficients of offsets `-(m - 1)..m`.
     pub table: Vec<Entry>,
-    /// Factors of the rows of loads and displacements, of tables per loaded row.
+    /// Factors of the rows of loads and displacements, for tables per loaded row.
     rows: Option<Vec<f64>>,
     couples: bool,
-    /// What rounding may do to a displacement by loads whose sizes add up to 1, and by loads whose 2-norm is 1.
+    /// The possible round-off of a displacement by loads whose absolute values add up to 1, and by loads whose 2-norm is 1.
     rounding: [f64; 2],
     transforms: OnceCell<[Convolution; 5]>,
 }
@@ -63,7 +63,7 @@ impl Operator {
         };
         let greatest = table.iter().flatten().fold(0.0, |greatest: f64, value| greatest.max(value.abs()));
         let norm = table.iter().flatten().map(|value| value * value).sum::<f64>().sqrt();
-        // Eight terms, each to some units of round-off of the largest; and the transforms, here and there.
+        // Eight terms, each with some units of round-off of the largest; and both transforms.
         let terms = (shear + poisson.abs() + unlike.abs()) * largest / PI + greatest;
         let steps = 4.0 + (16.0 * table.len() as f64).log2();
         let quadrature = if coat.is_some() { ACCURACY * greatest } else { 0.0 };
@@ -75,12 +75,12 @@ impl Operator {
         Operator { grid: place.grid, table, rows, couples: unlike != 0.0, rounding, transforms: OnceCell::new() }
     }
 
-    /// Whether pressures displace sideways and tractions along the normal.
+    /// Whether pressures have tangential displacements, and tractions displacements along the normal.
     pub fn couples(&self) -> bool {
         self.couples
     }
 
-    /// What rounding may do to a displacement by these loads.
+    /// The possible round-off of a displacement by these loads.
     pub fn rounding(&self, loads: impl Iterator<Item = f64>) -> f64 {
         let (sum, squares) =
             loads.fold((0.0, 0.0f64), |(sum, squares), load| (sum + load.abs(), squares + load * load));
@@ -161,7 +161,7 @@ mod tests {
         Place::new(Grid { mx, my, dx: 0.7, dy: 0.4 }, [2.0, 5.0], [0.3, 0.1])
     }
 
-    /// By midpoints of the kernels `((1 - nu)/r + nu x^2/r^3)/(2 pi G)` of both bodies, and `-K x/r^2/(pi G)`.
+    /// Closed forms compared with midpoint rules of the kernels `((1 - nu)/r + nu x^2/r^3)/(2 pi G)` of both bodies, and `-K x/r^2/(pi G)`.
     #[test]
     fn closed_forms_are_integrals() {
         let (place, m) = (place(4, 3), 200);
@@ -189,7 +189,7 @@ mod tests {
         }
     }
 
-    /// The transform does the sums, of tractions and of pressures.
+    /// The transform gives the direct sums, for tractions and for pressures.
     #[test]
     fn transforms_do_the_sums() {
         let operator = Operator::new(&place(40, 31), [0.2, 0.0]);

@@ -1,4 +1,4 @@
-//! Influence coefficients of tangential tractions on an element, and what couples unlike bodies.
+//! Influence coefficients of tangential tractions on an element, and the coupling coefficients of unlike bodies.
 //!
 //! Near an element they are differences of closed forms over its corners (Kalker 1990; Johnson, Contact Mechanics, section 3.6), with
 //! `r = hypot(X, Y)`:
@@ -9,8 +9,9 @@
 //! a = [X asinh(Y/|X|)],   b = [Y asinh(X/|Y|)],   c = [-r],   K/G = ((1 - 2 nu1)/G1 - (1 - 2 nu2)/G2)/4
 //! ```
 //!
-//! beside it integrals of the kernels, in closed form along one direction and by Gauss points along the other, so that those of slender
-//! elements lose no digits; and far from it sums over sixteen Gauss points. Tractions displace along the normal by `-(Axz qx + Ayz qy)`.
+//! Beside the element they are integrals of the kernels, in closed form along one direction and by Gauss points along the other, so that those of
+//! slender elements lose no digits. Far from it they are sums over sixteen Gauss points. Tractions have displacements `-(Axz qx + Ayz qy)` along the
+//! normal.
 
 use std::f64::consts::PI;
 
@@ -18,14 +19,14 @@ use crate::hankel::gauss;
 
 pub type Vector = [f64; 2];
 
-/// From so many of an element's longer sides on, points stand for it: four of them a side leave `(1/120)^8`.
+/// From this number of longer sides on Gauss points replace the element: with four per side the error is `(1/120)^8`.
 const FAR: f64 = 30.0;
-/// From so many of an element's sides on, eight Gauss points stand for it along that direction: they leave `(1/16)^16`.
+/// From this number of sides on eight Gauss points replace the element along this direction: the error is `(1/16)^16`.
 const BESIDE: f64 = 4.0;
-/// xx, yy, xy, xz, yz.
+/// The coefficients xx, yy, xy, xz, yz.
 pub type Entry = [f64; 5];
 
-/// What the bodies do: 1/G, nu/G and K/G, means of both and their difference.
+/// The compliances of the bodies: 1/G and nu/G, means of both, and their difference K/G.
 #[derive(Clone, Copy)]
 pub struct Compliance {
     pub shear: f64,
@@ -40,12 +41,12 @@ fn near(c: Compliance, [x, y]: Vector, [dx, dy]: Vector) -> (Entry, f64) {
         let (cx, cy) = (x + sx * dx, y + sy * dy);
         let term = |a: f64, b: f64| if a == 0.0 { 0.0 } else { a * (b / a.abs()).asinh() };
         let across = |a: f64, b: f64| {
-            // In units of the element: its logarithm goes out.
+            // Lengths are relative to the element: the logarithm of the unit cancels.
             let along = if b == 0.0 { 0.0 } else { b * (a.hypot(b) / dx).ln() };
             along + if a == 0.0 { 0.0 } else { a * (b / a).atan() }
         };
         let parts = [term(cx, cy), term(cy, cx), -cx.hypot(cy), across(cx, cy), across(cy, cx)];
-        // What is odd across a line of elements is 0 on it, whatever its terms.
+        // A coefficient that is odd across a line of elements is 0 on it, whatever its terms.
         let odd = [x != 0.0 && y != 0.0, x != 0.0, y != 0.0];
         let counts = [true, true, odd[0] && c.poisson != 0.0, odd[1] && c.unlike != 0.0, odd[2] && c.unlike != 0.0];
         largest =
@@ -63,7 +64,7 @@ fn near(c: Compliance, [x, y]: Vector, [dx, dy]: Vector) -> (Entry, f64) {
     (entry.map(|value| value / PI), largest)
 }
 
-/// In closed form along y, by Gauss points along x.
+/// The coefficients in closed form along y, and by Gauss points along x.
 fn beside(c: Compliance, rule: &[(f64, f64)], [x, y]: Vector, [dx, dy]: Vector) -> Entry {
     let mut sums = [0.0; 5];
     for (u, w) in rule {
@@ -87,7 +88,7 @@ fn beside(c: Compliance, rule: &[(f64, f64)], [x, y]: Vector, [dx, dy]: Vector) 
     sums
 }
 
-/// Gauss points.
+/// The coefficients by Gauss points in both directions.
 fn far(c: Compliance, rule: &[(f64, f64)], [x, y]: Vector, [dx, dy]: Vector) -> Entry {
     let mut sums = [0.0; 5];
     for (u, wu) in rule {
@@ -108,7 +109,7 @@ fn far(c: Compliance, rule: &[(f64, f64)], [x, y]: Vector, [dx, dy]: Vector) -> 
     sums
 }
 
-/// The coefficients at an offset from an element, and the largest term of those that may lose digits; none: 0.
+/// The coefficients at an offset from an element, and the largest term of those with cancellation, or 0.
 pub struct Element {
     compliance: Compliance,
     sides: Vector,
@@ -126,7 +127,7 @@ impl Element {
         if at[0].hypot(at[1]) > FAR * dx.max(dy) {
             return (far(c, &self.coarse, at, [dx, dy]), 0.0);
         }
-        // Along the shorter side, or along the other one where that is far.
+        // Gauss points along the shorter side, or along the other one if that is far.
         let are_beside = [0, 1].map(|k: usize| at[k].abs() > BESIDE * [dx, dy][k]);
         if are_beside[0] && (dx <= dy || !are_beside[1]) {
             return (beside(c, &self.fine, at, [dx, dy]), 0.0);
@@ -143,7 +144,7 @@ impl Element {
 mod tests {
     use super::*;
 
-    /// Where both are used: to what the closed forms leave of their terms.
+    /// The rules agree where both are used, to the round-off of the closed forms.
     #[test]
     fn far_and_near_agree() {
         let (c, rule) = (Compliance { shear: 0.5, poisson: 0.1, unlike: 0.2 }, gauss(4));

@@ -1,4 +1,4 @@
-//! Answers that were spoiled: the oracle finds each.
+//! Spoiled results: the oracle finds each.
 
 use campaign::call::{self, Outputs};
 use campaign::case::Case;
@@ -10,10 +10,10 @@ use campaign::random::Random;
 use campaign::refused_force::exceeded;
 use campaign::rules;
 
-/// Spoils an answer of a case.
+/// Spoils a result of a case.
 type Spoil<T, C> = fn(&mut T, &C);
 
-/// What is broken, and how.
+/// The name of a spoil, and the change.
 const NORMAL: [(&str, Spoil<Outputs, Case>); 7] = [
     ("a pressure", |found, _| {
         let greatest = greatest(&found.p);
@@ -34,7 +34,7 @@ const NORMAL: [(&str, Spoil<Outputs, Case>); 7] = [
         found.p[greatest] *= -1.0;
     }),
     ("the status", |found, case| {
-        // Nothing of the displacements that belong to them.
+        // The displacements do not change with the pressures.
         found.p.iter_mut().for_each(|p| *p *= 1.1);
         found.u = case.operator().displace(&found.p);
         let e = |i: usize| case.h[i] - found.report.normal.approach + found.u[i];
@@ -70,7 +70,7 @@ fn spoiled_answers_without_friction_are_found() {
     assert!(spoiled >= 70, "only {spoiled}");
 }
 
-/// The same with friction; more than one element has to be in contact for their coupling to be seen.
+/// Spoils with friction. More than one element must be in contact, so that their coupling shows.
 const SLIDING: [(&str, Spoil<Found, Sliding>); 5] = [
     ("a traction", |found, case| {
         let greatest = greatest(&found.p);
@@ -97,7 +97,7 @@ fn spoiled_answers_with_friction_are_found() {
     for seed in 0..110 {
         let Some(case) = campaign::friction::draw(&mut Random::new(seed)) else { continue };
         let found = call(&case.place, &case.slide, &case.stop);
-        // Tractions before of 1e9 times the bounds leave no digits of the slip.
+        // With previous tractions of 1e9 times the bounds the slip is round-off.
         let is_usual = found.status == 0 && found.report.normal.contact_count > 3 && case.slide.previous.is_none();
         if !is_usual || !campaign::friction_rules::check(&case, &found, &case.before(&found.p)).failures.is_empty() {
             continue;
@@ -113,7 +113,7 @@ fn spoiled_answers_with_friction_are_found() {
     assert!(spoiled.iter().all(|count| *count >= 30), "{spoiled:?}");
 }
 
-/// A force of a part of mu N is carried by some creepage, so that a refusal of it would be found; of more than any creepage carries none is.
+/// Some creepage carries a part of mu N, so that a refusal of it would be found. No creepage carries more than the greatest force.
 #[test]
 fn refused_forces_that_creepages_carry_are_found() {
     let (mut tried, mut found) = (0, 0);
@@ -126,7 +126,7 @@ fn refused_forces_that_creepages_carry_are_found() {
             continue;
         }
         let k = usize::from(case.slide.is_force(1));
-        // Spin and the other creepage turn tractions away.
+        // Spin and the other creepage would change the direction of tractions.
         (case.slide.spin, case.slide.amount) = (0.0, [0.0; 2]);
         case.slide.amount[k] = 0.5 * case.carried;
         found += usize::from(exceeded(&case).is_some());

@@ -14,7 +14,7 @@ _KNOWN = ("law", "work", "range", "smear", "start", "stiffness", "stability", "s
 
 
 def adhesion(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
-    """A `contact_normal_adhesion` and the array that it points to."""
+    """A `contact_normal_adhesion`, and the array that it points to."""
     if not isinstance(value, Mapping):
         raise TypeError(f"adhesion is {value!r}; it must be a mapping of {', '.join(_KNOWN)}")
     unknown = [str(name) for name in value if name not in _KNOWN]

@@ -1,4 +1,4 @@
-"""What callers pass, checked and turned into what the C ABI takes."""
+"""Checks the arguments of callers, and converts them to those of the C ABI."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     Integers = npt.NDArray[np.int32]
     Doubles = npt.NDArray[np.float64]
 
-# The elastic constants: of both bodies, or of each.
+# The elastic constants: one value for both bodies, or one for each.
 Both = Union[float, "npt.ArrayLike"]
 
 
 class AccuracyOptions(TypedDict, total=False):
-    """The options of calls that have a limit of time of their own; see `SolveOptions`."""
+    """The options of calls that have their own time limit; see `SolveOptions`."""
 
     method: str | int
     smoother: str | int
@@ -53,37 +53,36 @@ class SolveOptions(AccuracyOptions, total=False):
     method : str or int
         "AUTO" (default), "NORM", "MULTIGRID", "FULL_MULTIGRID" or "PROJECTED_CG".
     smoother : str or int
-        Of the multigrid methods: "AUTO" (default), "GAUSS_SEIDEL", "RED_BLACK", "JACOBI" or "FFT".
+        Smoother of the multigrid methods: "AUTO" (default), "GAUSS_SEIDEL", "RED_BLACK", "JACOBI" or "FFT".
     pre_sweeps, post_sweeps : int
         n1 and n2 of a cycle V(n1, n2); default 1.
     relaxation : float
-        In (0, 2); default 0: what suits the smoother.
+        Relaxation of the smoother, in (0, 2); default 0: a value that suits the smoother.
     coarsest : int
         The coarsest grid has at most this many elements in each direction, 1 to 16; default 4.
     active_set : str or int
-        "FREE" (default) or "FIXED": the contact area stays as `contact` gives it.
+        "FREE" (default) or "FIXED": the contact area is that of `contact`.
     initial_guess : str or int
-        "NONE" (default), "GIVEN" (as soon as there is a `pressure`) or "PREVIOUS" (of a `Solver`).
+        "NONE" (default), "GIVEN" (set if there is a `pressure`) or "PREVIOUS" (for a `Solver`).
     criterion : str or int
         "RESIDUAL" (default) or "UPDATE".
     tolerance : float
-        Of the criterion, between 0 and 1; default 1e-6.
+        Tolerance of the criterion, between 0 and 1; default 1e-6.
     error_ratio : float
         If > 0, the solve may stop once the residual is below this part of the estimated discretisation error; default 0.
     max_cycles : int
-        Cycles, or iterations, on the finest grid at most; default 1000. A search for a pull (adhesion, force < 0) may take more.
+        Largest number of cycles, or iterations, on the finest grid; default 1000. A search for a pull (adhesion, force < 0) may take more.
     max_seconds : float
-        If > 0, the call ends after so many seconds, with the best so far; default 0: no limit.
+        If > 0, the call ends after this time, with the best result so far; default 0: no limit.
     neglect_below : float
-        Of `solve` alone: effects whose omission changes no quantity by more than this part are left out; `Result.neglected` says which.
-        Default 0: none.
+        For `solve` alone: effects whose omission changes no quantity by more than this part are left out, and `Result.neglected` names them. Default 0: none.
     threads : int
         Default 1; 0: all cores.
     precision : str or int
         "AUTO" (default), "DOUBLE" or "MIXED".
     dump : str or path, optional
-        A file into which a call that fails writes what it was given, for `contact-normal-replay`: "failed-%p-%n.dump", where %p is the
-        number of the process and %n that of the dump. docs/dump.md says when.
+        The file into which a call that fails writes its inputs, for `contact-normal-replay`: "failed-%p-%n.dump", where %p is the number of the process and %n
+        that of the dump. docs/dump.md says when.
     """
 
     max_seconds: float
@@ -119,7 +118,7 @@ def number(name: str, value: Any) -> float:
 
 
 def relative(name: str, value: Any) -> float:
-    """A relative error that is wanted."""
+    """A wanted relative error."""
     error = number(name, value)
     if error >= 1.0:
         raise ValueError(f"{name} is {error:g}; it is a relative error, below 1: that of 1 % is 0.01")
@@ -127,7 +126,7 @@ def relative(name: str, value: Any) -> float:
 
 
 def flag(name: str, value: Any) -> bool:
-    """`value` as true or false: no word and no array is one of them."""
+    """`value` as True or False. Words and arrays are refused."""
     if isinstance(value, (bool, np.bool_)) or isinstance(value, int) and value in (0, 1):
         return bool(value)
     raise TypeError(f"{name} is {value!r}; it must be True or False")
@@ -140,7 +139,7 @@ def two(name: str, value: Any) -> tuple[float, float]:
 
 
 def both(name: str, values: Any, rule: str = "a pair") -> tuple[Any, Any]:
-    """The parts of what has two."""
+    """The two parts of a pair."""
     try:
         count = 0 if isinstance(values, (str, bytes, Mapping)) else len(values)
     except TypeError:
@@ -166,7 +165,7 @@ _DOUBLE = np.dtype(np.float64)
 
 
 def _has_mask(values: Any) -> bool:
-    """Whether an array has a mask, or one of those that a list holds."""
+    """Whether an array, or an array in a list, has a mask."""
     if isinstance(values, (list, tuple)):
         return any(_has_mask(one) for one in values)
     return isinstance(values, np.ma.MaskedArray)
@@ -189,7 +188,7 @@ def _plain(name: str, values: Any, kinds: str, rule: str) -> npt.NDArray[Any]:
 
 
 def real(name: str, values: Any) -> Doubles:
-    """An array of doubles, of any shape. What a double cannot hold is refused."""
+    """An array of doubles, of any shape. Values that a double cannot hold are refused."""
     if type(values) is np.ndarray and values.dtype is _DOUBLE:
         return values
     array = _plain(name, values, "fiu", "real numbers")
@@ -207,7 +206,7 @@ def real(name: str, values: Any) -> Doubles:
 
 
 def without_mask(name: str, values: Any) -> Any:
-    """With +infinity in the places of what is masked."""
+    """The array with +infinity in masked places."""
     if isinstance(values, (list, tuple)):
         return [without_mask(name, one) for one in values]
     if not isinstance(values, np.ma.MaskedArray):
@@ -218,7 +217,7 @@ def without_mask(name: str, values: Any) -> Any:
 
 
 def refuse_x_first(name: str, values: Any) -> None:
-    """Refuses an array of xarray whose first dimension is x: rows are along y."""
+    """Refuses an xarray array whose first dimension is x: rows are along y."""
     dimensions = getattr(values, "dims", None)
     if not isinstance(dimensions, tuple) or len(dimensions) != 2:
         return
@@ -228,7 +227,7 @@ def refuse_x_first(name: str, values: Any) -> None:
 
 
 def distances(name: str, values: Any) -> Doubles:
-    """Undeformed distances: what is masked has no surface, and so a distance of +infinity."""
+    """Undeformed distances. Masked elements have no surface, and so a distance of +infinity."""
     if type(values) is np.ndarray:
         return real(name, values)
     refuse_x_first(name, values)
@@ -237,13 +236,13 @@ def distances(name: str, values: Any) -> Doubles:
 
 
 def doubles(name: str, values: Any, shape: tuple[int, ...] | None = None, dimensions: str = "(my, mx)") -> Doubles:
-    """Contiguous doubles of `shape`, or with as many dimensions as `dimensions` names; copied only where they are not that."""
+    """Contiguous doubles of `shape`, or with the dimensions that `dimensions` names; copied only if necessary."""
     refuse_x_first(name, values)
     return shaped(name, real(name, values), shape, dimensions)
 
 
 def shaped(name: str, array: Doubles, shape: tuple[int, ...] | None = None, dimensions: str = "(my, mx)") -> Doubles:
-    """The array, contiguous, if it has that shape."""
+    """The array, contiguous; refused if it has another shape."""
     if array.ndim != dimensions.count(",") + 1:
         raise ValueError(f"{name} has shape {array.shape}; it must be {dimensions}")
     if shape is not None and array.shape != shape:
@@ -264,7 +263,7 @@ def integers(name: str, values: Any, shape: tuple[int, ...]) -> Integers:
 
 
 def constant(name: str, option: str, value: Any) -> int:
-    """A constant of a named option, by its name or its number."""
+    """The constant of a named option, by its name or its number."""
     return _constants.value_of(option, value) if isinstance(value, str) else integer(name, value)
 
 
@@ -273,7 +272,7 @@ def pair(name: str, value: Any) -> Any:
     if isinstance(value, float):
         return _PAIR(value, value)
     if type(value) is int:
-        # numpy has none beyond 64 bits.
+        # numpy has no integers beyond 64 bits.
         value = number(name, value)
     if isinstance(value, tuple) and len(value) == 2 and all(isinstance(one, float) for one in value):
         return _PAIR(*value)
@@ -284,11 +283,11 @@ def pair(name: str, value: Any) -> Any:
 
 
 _OPTIONS = {field[0]: field[1] for kind in (Options, Cycle) for field in kind._fields_ if field[0] in SolveOptions.__annotations__}
-# Those of the cycle of the paper's methods.
+# Options of the cycle of the paper's methods.
 _CYCLE = frozenset(names(Cycle))
 
 
-# Arguments of `solve`, for those who write one of them wrong.
+# Arguments of `solve`, for suggestions if one is misspelt.
 _SCENE = (
     "approach", "force", "mean_pressure", "shear_modulus", "poisson_ratio", "young_modulus", "e_star", "influence", "layer", "pressure_limit", "period",
     "patches", "row_tables", "coating", "friction", "adhesion", "visco", "pressure", "contact", "units", "progress",
@@ -296,19 +295,19 @@ _SCENE = (
 
 
 def _nearest(name: str) -> str:
-    """The argument or option that may be meant."""
+    """The argument or option that is probably meant."""
     near = difflib.get_close_matches(name, [*_SCENE, *_OPTIONS], 1)
     return f" (is {near[0]} meant?)" if near and near[0] != name else ""
 
 
 def options(given: Mapping[str, Any]) -> Any:
-    """The struct of options with those that are given."""
+    """The struct of options with the given ones set."""
     struct = initialised("options")
     for name, value in given.items():
         if name not in _OPTIONS:
             raise TypeError(f"no argument and no option {name}{_nearest(name)}; options are: {', '.join(sorted(_OPTIONS))}")
         if name == "dump":
-            # The struct keeps the text, which it points to.
+            # The struct keeps the text to which it points.
             struct.path = None if value is None else os.fsencode(value)
             struct.dump = ctypes.cast(ctypes.c_char_p(struct.path), ctypes.c_void_p)
             continue

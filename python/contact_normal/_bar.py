@@ -1,4 +1,4 @@
-"""The bars that `progress=True` draws. One that is done ends at 100 %."""
+"""Progress bars for `progress=True`. The bar of a finished call ends at 100 %."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ def has_terminal() -> bool:
 
 
 class Bar:
-    """A bar that fills: with tqdm if that is installed, else on stderr by itself."""
+    """A progress bar: by tqdm if that is installed, otherwise on stderr."""
 
     WIDTH = 30
 
     def __init__(self, file: TextIO | None = None) -> None:
-        # None where there is no terminal, as in windowed programs and services: nothing is drawn then.
+        # Without a terminal, as in windowed programs and services, it is None, and nothing is drawn.
         self._file, self._began = file or sys.stderr, time.monotonic()
         self._tqdm: Any = None
         try:
@@ -38,11 +38,11 @@ class Bar:
         self._written(partial(self._begin, tqdm))
 
     def _begin(self, tqdm: Any) -> None:
-        # It writes at once.
+        # tqdm writes when it is made.
         self._tqdm = tqdm(total=100, file=self._file, bar_format="{l_bar}{bar}| {elapsed}<{remaining}{postfix}")
 
     def draw(self, part: float, text: str) -> None:
-        """Draws the part that is done, 0 to 1, and a text."""
+        """Draws the finished part, 0 to 1, and a text."""
         if self._tqdm is not None:
             self._tqdm.n = round(100 * part)
             self._written(partial(self._tqdm.set_postfix_str, text))
@@ -66,17 +66,16 @@ class Bar:
 
 
 class SolveBar:
-    """A bar that draws how far the residual has come on its way to the tolerance, ten times a second at most. It never goes back.
+    """A bar that shows the residual on its way to the tolerance, at most ten times a second. It never goes back.
 
     Parameters
     ----------
     elements : int or None
-        Of the finest grid: cycles on coarser ones do not fill the bar. None: not known; each grid that is finer than those before then has
-        half of what is left.
+        Elements of the finest grid: cycles on coarser ones do not fill the bar. None: not known; each finer grid then gets half of the remaining bar.
     tolerance : float
-        Of the residual.
+        Tolerance of the residual.
     entries : int
-        Tangential problems that are solved: if there are some, the bar is filled by those that are done.
+        Number of tangential problems. If there are some, the bar shows the finished ones.
     """
 
     def __init__(self, elements: int | None, tolerance: float, entries: int = 0) -> None:
@@ -95,7 +94,7 @@ class SolveBar:
 
     def _part_of(self, told: Progress) -> float:
         if self._entries:
-            # Cycles of the normal problem come first, and they change the pressures.
+            # Cycles of the normal problem come first, and have a change of the pressures.
             return min(1.0, told.cycles / self._entries) if told.update == 0.0 else 0.0
         share = 1.0
         if self._elements is None:
@@ -109,6 +108,6 @@ class SolveBar:
         return self._begin + share * min(1.0, math.log(told.residual) / math.log(self._tolerance))
 
     def close(self, is_done: bool) -> None:
-        """Draws what was told last, full if all is done, and goes to the next line."""
+        """Draws the last progress, full if the call is done, and goes to the next line."""
         self._bar.draw(1.0 if is_done else self._part, self._text)
         self._bar.close()

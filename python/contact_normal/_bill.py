@@ -24,31 +24,31 @@ VERDICTS = ("not decided", "negligible", "needed")
 
 
 def omissions(bits: int) -> tuple[str, ...]:
-    """The names of what a report says was left out."""
+    """The names of the effects that a report says were left out."""
     return tuple(name for number, name in OMISSIONS.items() if bits >> (number - 1) & 1)
 
 
 class BillRow(NamedTuple):
-    """What leaving out an effect, or two, does to a quantity, and what it saves.
+    """The effect on a quantity of leaving out one effect, or two, and the savings.
 
     Attributes
     ----------
     omitted : tuple of str
-        What is left out: "coating", "period", "patches", "layer", "pressure_limit", "friction", "coupling" (unlike bodies as if they were
-        alike), "spin", "friction_compliance", "coating_as_layer" (a thin layer in the place of the coating), "adhesion", "friction_law",
-        "friction_layer", "visco". Two names: both.
+        The effects that are left out: "coating", "period", "patches", "layer", "pressure_limit", "friction", "coupling" (like bodies in the place of unlike
+        ones), "spin", "friction_compliance", "coating_as_layer" (a thin layer in the place of the coating), "adhesion", "friction_law", "friction_layer",
+        "visco". Two names: both.
     quantity : str
         "force", ...
     verdict : str
-        "negligible", "needed" or "not decided", by the target.
+        "negligible", "needed" or "not decided", relative to the target.
     value, change, error : float
-        The value with all effects, what leaving out adds to it, and how far that may be off (negative: not known); nan: there is none.
+        The value with all effects, its change without the effect, and the error of the change (negative: not known); nan: there is none.
     seconds, seconds_without : float
-        Predicted for the scene's own grid with one thread, as it is and without.
+        Predicted seconds on the scene's own grid with one thread, with and without the effect.
     bytes, bytes_without : float
-        The same of memory.
+        Predicted memory, with and without the effect.
     lack : str
-        Why a number is not known; "": nothing is missing.
+        The reason for which a number is not known; "": all are known.
     """
 
     omitted: tuple[str, ...]
@@ -65,7 +65,7 @@ class BillRow(NamedTuple):
 
     @classmethod
     def of(cls, row: EffectsRow) -> BillRow:
-        """The row of the library."""
+        """The row of a struct of the library."""
         omitted = tuple(name_of(OMISSIONS, number) for number in (row.omitted, row.also_omitted) if number)
         return cls(
             omitted, name_of(QUANTITY_NAMES, row.quantity), name_of(VERDICTS, row.verdict), row.value, row.change, row.change_error, row.seconds,
@@ -74,21 +74,21 @@ class BillRow(NamedTuple):
 
     @property
     def relative(self) -> float:
-        """The change over the value."""
+        """The change relative to the value."""
         return self.change / abs(self.value) if self.value else float("nan")
 
 
 class Bill(list[BillRow]):
-    """The rows of `what_matters`: for each effect, then for each pair, one for each quantity.
+    """The rows of `what_matters`: for each effect, then for each pair, one row for each quantity.
 
     Attributes
     ----------
     target : float
-        The relative accuracy that the verdicts are for.
+        The relative accuracy of the verdicts.
     estimated : str
-        What the quantity "force" is: "force", or "approach" where the force is prescribed.
+        The meaning of the quantity "force": "force", or "approach" if the force is prescribed.
     message : str
-        Why rows are not solved, where `max_seconds` or `max_cycles` ended the call; else "".
+        The reason for which rows are not solved, if `max_seconds` or `max_cycles` ended the call; otherwise "".
     """
 
     target: float
@@ -109,13 +109,13 @@ class Bill(list[BillRow]):
 
     @property
     def negligible(self) -> list[str]:
-        """The effects without which no quantity changes by more than the target; one at a time."""
+        """The effects without which no quantity changes by more than the target, one effect at a time."""
         return self._with("negligible")
 
     def __str__(self) -> str:
         if not self:
             return "the scene names no effect: there is nothing to leave out"
-        # As wide as the longest names, and the columns of shorter bills stay.
+        # The column is as wide as the longest name.
         names = [" + ".join(row.omitted) for row in self]
         width = max(34, *(len(name) + 2 for name in names))
         lines = [f"{'without':{width}}{'quantity':18}{'change':>10}{'+-':>10}{'seconds':>11}{'saved':>11}  verdict at {self.target:g}"]
@@ -133,7 +133,7 @@ class Bill(list[BillRow]):
         return "\n".join(lines)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws for each effect the largest relative change without it, beside the seconds that leaving it out saves; `axes` as for `Result.plot`."""
+        """Draws for each effect the largest relative change without it, and the seconds that are saved; `axes` as for `Result.plot`."""
         from ._plot_accuracy import plot_bill
 
         return plot_bill(self, axes)
@@ -149,20 +149,20 @@ def what_matters(
     pairs: bool = True,
     **given: Unpack[SceneArguments],
 ) -> Bill:
-    """Says which effects a scene calls for: what each quantity changes by without an effect, and what leaving it out saves.
+    """Says which effects a scene calls for: how much each quantity changes without an effect, and how much time that saves.
 
     The scene is solved on small grids, for at most 5 % of its own predicted seconds or 100 ms, or `max_seconds`.
 
     Parameters
     ----------
     h, dx, dy, **given
-        As for `solve`, with its effects and options; without own coefficients.
+        As for `solve`, with effects and options, but without own coefficients.
     target : float
-        Relative accuracy that is asked for: smaller changes are negligible.
+        Wanted relative accuracy: smaller changes are negligible.
     quantities : sequence of str
         See `contact_normal.quantities`.
     pairs : bool
-        Whether pairs of effects are left out, too: leaving out two is not the sum.
+        Whether pairs of effects are also left out, because their changes do not add up.
 
     Returns
     -------

@@ -1,6 +1,6 @@
-"""Python callables as the callbacks of the C ABI, called on the thread that asked for the solve.
+"""Python callables as callbacks of the C ABI, called on the thread that asked for the solve.
 
-An exception in one cancels the call and is raised after it; what is none, as KeyboardInterrupt, is raised at once.
+An exception in a callable cancels the call and is raised after it. A KeyboardInterrupt outside of callables is raised at once.
 """
 
 from __future__ import annotations
@@ -24,22 +24,22 @@ if TYPE_CHECKING:
 
 
 class Progress(NamedTuple):
-    """What the progress callback is told after each cycle.
+    """The progress after a cycle.
 
     Attributes
     ----------
     mx, my : int
-        Elements of the grid that the cycle was on.
+        Elements of the grid of the cycle.
     cycles : int
         Cycles on that grid so far.
     active_set_changes : int
         Elements that entered or left the contact area in the last cycle.
     seconds, work_units : float
-        Since the solve began; a work unit is a product with the matrix of the finest grid.
+        Since the beginning of the solve; a work unit is a product with the matrix of the finest grid.
     update : float
-        rms over the contact area of the last change of the pressures.
+        The rms over the contact area of the last change of the pressures.
     residual : float
-        Relative residual over the contact area, as far as it is known.
+        Relative residual over the contact area, as far as known.
     """
 
     mx: int
@@ -58,13 +58,13 @@ class Watched:
     Parameters
     ----------
     progress : callable, bool or None
-        As `solve` has it.
+        As for `solve`.
     options : Options
         The struct that gets the callback.
     scene : Scene or None
-        What is solved; None: on grids that are not known beforehand.
+        The scene; None: its grids are not known beforehand.
     entries : int
-        Tangential problems that are solved, too.
+        Number of tangential problems that are also solved.
     asks : bool
         Whether the call has other callbacks.
     """
@@ -103,7 +103,7 @@ class Watched:
     def call(
         self, function: Callable[..., int], *arguments: Any, handle: Handle | None = None, keep: Any = None, report: Any = None
     ) -> tuple[int, str]:
-        """As `called`. Raises what the callable raised, and closes the bar."""
+        """See `called`. Raises the exception of the callable, and closes the bar."""
         status = -1
         try:
             status, message = called(function, *arguments, handle=handle, keep=(self, keep), short=self._is_short, report=report, asks=self._asks)
@@ -139,19 +139,19 @@ class Surface:
             return 1
 
     def finish(self) -> None:
-        """Raises what the callable raised."""
+        """Raises the exception of the callable."""
         raise_of(self)
 
 
 def set_log(callback: Callable[[int, str], Any] | None, level: int = LOG_INFO) -> None:
-    """Sends the library's log messages to a callable, for the whole process.
+    """Sends the log messages of the library to a callable, for the whole process.
 
     Parameters
     ----------
     callback : callable or None
-        Called as `callback(level, message)`; None: no messages, as at the start.
+        Called as `callback(level, message)`; None: no messages, as at the beginning.
     level : int
-        `LOG_WARNING`: what the caller should look at; `LOG_INFO`: what the library decided, too.
+        `LOG_WARNING`: messages that need attention; `LOG_INFO`: also the decisions of the library.
 
     Examples
     --------
@@ -167,7 +167,7 @@ def set_log(callback: Callable[[int, str], Any] | None, level: int = LOG_INFO) -
 
 
 def _logged(level: int, message: bytes, _user: Any) -> None:
-    # A thread may be on its way to here while another replaces the callable.
+    # Another thread may replace the callable just before this call.
     callbacks = list(_log)
     try:
         if callbacks and not given_up():
@@ -177,8 +177,8 @@ def _logged(level: int, message: bytes, _user: Any) -> None:
             raise
 
 
-# The callable that gets messages, if any.
+# The callable that receives messages, if there is one.
 _log: list[Callable[[int, str], Any]] = []
-# The library may call it at any time: it is never freed, and a reload of this module keeps the one before.
+# The library may call it at any time: it is never freed, and after a reload of this module the earlier one remains.
 _LOGGED = LogCallback(_logged)
 _KEPT = [*globals().get("_KEPT", ()), _LOGGED]

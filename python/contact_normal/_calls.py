@@ -1,8 +1,8 @@
-"""Calls of the library that a signal ends: another thread makes them, while the one that was asked waits and makes their callbacks.
+"""Calls of the library that a signal can end: another thread makes them, while the calling thread waits and runs their callbacks.
 
-Python runs the handlers of signals, and so raises KeyboardInterrupt, on its main thread and only between two instructions of its own: a call
-of the library would hold them up until it returns, and what they raise within a callback of ctypes is lost. So the main thread calls
-through a worker. Other threads get no signals: they call the library themselves.
+Python runs the handlers of signals, and so raises KeyboardInterrupt, on its main thread, and only between two of its own instructions. During a call of the
+library they would wait until it returns, and an exception within a callback of ctypes would be lost. So the main thread calls through a worker. Other threads
+get no signals, and call the library themselves.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-# A call that was given up is waited for as long as this: most end with their next cycle, within that time.
+# The time for which an abandoned call is waited for: most calls end with their next cycle, within this time.
 _PATIENCE = 0.1
-# Signals are heard once in so many seconds at least.
+# The longest time between two checks for signals.
 _LISTEN = 0.05
-# Elements times cycles at most of a solve that the main thread makes itself: the worst, which do not converge, take .15 s on a busy machine.
-# A worker costs some 50 us a solve, with its callbacks; the usual solve of so many elements takes 200.
+# The largest number of elements times cycles of a solve that the main thread makes itself: the slowest, which do not converge, take .15 s on a busy machine. A
+# worker costs some 50 us a solve with its callbacks; a usual solve of this size takes 200.
 _SHORT = 1_050_000
 
 
@@ -42,9 +42,9 @@ class Call(Generic[T]):
     Attributes
     ----------
     given_up : bool
-        Whether nobody waits for its result: its callbacks end it, or `stop`.
+        Whether no thread waits for the result: callbacks or `stop` end the call.
     stop : c_int32
-        1 as soon as it is given up, for `options.stop`.
+        1 once the call is given up, for `options.stop`.
     """
 
     def __init__(self, work: Callable[[], T]) -> None:
@@ -59,7 +59,7 @@ class Call(Generic[T]):
         self._news, self._answered, self._ended = (threading.Lock() for _ in range(3))
         for lock in (self._news, self._answered, self._ended):
             lock.acquire()
-        # A worker takes it when it begins. Who gives the call up takes it where no worker has begun: then none will.
+        # A worker acquires it when it begins. A thread that gives the call up acquires it if no worker has begun, and then none will.
         self._begun = threading.Lock()
 
     def make(self) -> None:
@@ -71,11 +71,11 @@ class Call(Generic[T]):
             self._found.append(self._work())
         except BaseException as error:  # it is raised where the result is waited for
             self._error = error
-        # What it kept alive: a solver that was closed meanwhile is freed here.
+        # The work may hold a solver that was closed meanwhile: it is freed here.
         self._work = None
 
     def end(self) -> None:
-        """On the worker: the result is there."""
+        """On the worker: tells the waiting thread that the result exists."""
         self._is_over = True
         _given_up.discard(self)
         self._ended.release()
@@ -86,7 +86,7 @@ class Call(Generic[T]):
             self._news.release()
 
     def ask(self, question: Callable[[], Any]) -> Any:
-        """On the worker: what `question()` returns on the thread that waits."""
+        """On the worker: the result of `question()` on the waiting thread."""
         self._question = question
         self._tell()
         self._answered.acquire()
@@ -99,12 +99,12 @@ class Call(Generic[T]):
         return answer
 
     def result(self, worker: _Worker) -> T:
-        """On the thread that waits: answers what is asked until the worker has the result. What else ends the wait gives the call up."""
+        """On the waiting thread: answers questions until the worker has the result. Any exception gives the call up."""
         _waiting.add(self)
         try:
             worker.give(self)
             while True:
-                # A signal that the system gives to another thread does not wake this one.
+                # A signal that the system delivers to another thread does not wake this one.
                 while not self._news.acquire(timeout=_LISTEN):
                     if self._is_orphan:
                         raise RuntimeError("a process that is forked within a callback must not return from it: its call goes on in the other process")
@@ -126,7 +126,7 @@ class Call(Generic[T]):
         return self._found.pop()
 
     def orphan(self) -> None:
-        """In a forked process: it has no worker that ends the call."""
+        """In a forked process, whose worker does not exist: ends the call."""
         self._is_orphan = True
 
     def _give_up(self) -> None:
@@ -140,7 +140,7 @@ class Call(Generic[T]):
         self.wait(_PATIENCE)
 
     def wait(self, seconds: float = math.inf) -> None:
-        """Waits until the worker has done with it, or so many seconds."""
+        """Waits until the worker has finished the call, or at most `seconds`."""
         end = time.monotonic() + seconds
         while not self._is_over and time.monotonic() < end:
             self._ended.acquire(timeout=0.02)
@@ -149,7 +149,7 @@ class Call(Generic[T]):
 
 
 class _Worker(threading.Thread):
-    """A thread that makes one call after another. It ends when it is given None."""
+    """A thread that makes one call after another, until it is given None."""
 
     def __init__(self) -> None:
         super().__init__(name="contact-normal", daemon=True)
@@ -161,13 +161,13 @@ class _Worker(threading.Thread):
         self._ready.acquire()
 
     def give(self, call: Call[Any] | None) -> None:
-        """What it shall do next."""
+        """Gives the worker its next call."""
         self._call = call
         self._given.release()
 
     def run(self) -> None:
-        """Makes calls."""
-        # It joins the others itself: a signal may interrupt the thread that made it.
+        """Makes the calls."""
+        # The worker adds itself to the idle ones, because a signal may interrupt the thread that started it.
         _idle.append(self)
         self._ready.release()
         while True:
@@ -184,7 +184,7 @@ class _Worker(threading.Thread):
 
 
 def _resting() -> _Worker | None:
-    """A worker that has nothing to do."""
+    """An idle worker."""
     try:
         return _idle.pop()
     except IndexError:
@@ -198,7 +198,7 @@ _here = threading.local()
 
 
 def raise_of(owner: Any) -> None:
-    """Raises what a callback of the `owner` raised, and forgets it: its traceback would keep all that the call had."""
+    """Raises the exception of a callback of the `owner`, and forgets it, because its traceback would keep the objects of the call."""
     error, owner._error = owner._error, None
     if error is not None:
         try:
@@ -214,30 +214,30 @@ def here() -> Call[Any] | None:
 
 
 def asked(question: Callable[[], T]) -> T:
-    """What `question()` returns on the thread that waits for this call."""
+    """The result of `question()` on the thread that waits for this call."""
     call = here()
     return question() if call is None else call.ask(question)
 
 
 def given_up() -> bool:
-    """Whether nobody waits for the call that this thread makes."""
+    """Whether no thread waits for the call that this thread makes."""
     call = here()
     return _daemons.is_to_end() if call is None else call.given_up
 
 
 def on_main_thread() -> bool:
-    """Whether this is the thread that gets signals."""
+    """Whether this is the thread that receives signals."""
     return threading.get_ident() == threading.main_thread().ident
 
 
 def is_short(elements: int, cycles: int) -> bool:
-    """Whether a solve ends so soon that no signal has to end it."""
+    """Whether a solve is so short that no signal has to end it."""
     return 0 <= cycles * elements <= _SHORT
 
 
 def made(work: Callable[[], T], short: bool = False) -> T:
-    """What `work()` returns, which calls the library. A signal ends it on the main thread, unless it is short."""
-    # No thread begins or goes on where the interpreter ends.
+    """The result of `work()`, which calls the library. On the main thread a signal ends it, unless it is short."""
+    # No thread can begin or continue while the interpreter ends.
     if short or not on_main_thread() or sys.is_finalizing():
         return work()
     try:
@@ -252,10 +252,10 @@ def called(
     function: Callable[..., int], *arguments: Any, handle: Handle | None = None, keep: Any = None, short: bool = False, report: Any = None,
     options: Any = None, asks: bool = False,
 ) -> tuple[int, str]:
-    """The status of a function of the library, and its message: "" after OK, unless the call writes a `report` and warns there.
+    """The status of a function of the library, and its message: "" after OK, unless the call writes a `report` with warnings.
 
-    With a handle, its address is the first argument. `keep` lives at least until the function returns. A call without callbacks names its
-    `options`, whose `stop` ends it when it is given up; one with callbacks `asks`.
+    With a handle its address is the first argument. `keep` lives until the function returns. A call without callbacks names its `options`, whose `stop` ends it
+    when it is given up; one with callbacks sets `asks`.
     """
     if handle is not None:
         handle.wait()
@@ -271,23 +271,23 @@ def _told(
     _, report, options = kept
     if options is not None and (call := here()) is not None:
         options.stop = pointer(call.stop)
-    # The thread that asked a worker waits for its calls.
+    # A thread that calls through a worker waits for its calls anyway.
     with _daemons.within(asks and here() is None), _NO_HANDLE if handle is None else handle as first:
         status = int(function(*first, *arguments))
-        # The message belongs to the thread that calls; after OK it may be one of an earlier call.
+        # The message belongs to the calling thread. After OK it may be that of an earlier call.
         has_message = status or report is not None and report.warnings
         return status, last_error() if has_message else ""
 
 
 def _end_workers() -> None:
-    """Before a fork: workers that have nothing to do end, for a process with threads is not to be forked."""
+    """Before a fork: ends idle workers, because a process with threads must not be forked."""
     while (worker := _resting()) is not None:
         worker.give(None)
         worker.join()
 
 
 def _forget_workers() -> None:
-    """In a forked process: it has none of the threads, and the one that forked makes no call there."""
+    """In a forked process: forgets the workers, which do not exist there; the forked thread makes no call there."""
     _here.call = None
     _daemons.forget()
     for call in list(_given_up):
@@ -297,7 +297,7 @@ def _forget_workers() -> None:
 
 
 def _wait_for_given_up() -> None:
-    """At the end of the process: what still calls the library must not do so when the interpreter is gone."""
+    """At the end of the process: waits for calls of the library, which must not outlast the interpreter."""
     for call in list(_given_up):
         call.wait()
 

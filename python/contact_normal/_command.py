@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from . import _command_bill, _command_prices, _command_replay, _command_solve, _command_table
 from ._library import VERSION, ContactNormalError
 
-# What the program returns; the page on the command line has the same table.
+# The exit codes. The page on the command line has the same table.
 STOPPED_EARLY, REFUSED, NO_FILE, INTERRUPTED, READER_GONE = 1, 3, 4, 130, 141
 _CODES = """\
 exit codes:
@@ -39,7 +39,7 @@ def parser() -> argparse.ArgumentParser:
     for module in (_command_solve, _command_prices, _command_bill, _command_table, _command_replay):
         module.add(commands)
     for command in commands.choices.values():
-        # Older versions of argparse take -1e-6 for an option, and all take -1:1:3 for one.
+        # Older versions of argparse take -1e-6 for an option, and all versions take -1:1:3 for one.
         command._negative_number_matcher = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?([:,].*)?$")
     return top
 
@@ -50,11 +50,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     arguments : sequence of str, optional
-        By default those of the process.
+        By default the arguments of the process.
     """
     given = parser().parse_args(arguments)
     if isinstance(sys.stdout, io.TextIOWrapper):
-        # What the terminal cannot show, as a sign of micro, must not end a solve that is done.
+        # Characters that the terminal cannot show, as a micro sign, must not end a finished solve.
         sys.stdout.reconfigure(errors="replace")
     try:
         with warnings.catch_warnings():
@@ -64,7 +64,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             sys.stdout.flush()
         return code
     except BrokenPipeError:
-        # The reader, as `head`, has enough. Python would say so once more at its end.
+        # The reader, as `head`, has ended. Python would report this again at its end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return READER_GONE
     except (ContactNormalError, ValueError, TypeError, OverflowError) as error:

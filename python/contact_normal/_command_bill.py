@@ -13,7 +13,7 @@ from ._quantities import QUANTITIES
 
 
 def add(commands: Any) -> None:
-    """The command and its options."""
+    """Adds the command and its options."""
     command = commands.add_parser("bill", usage=USAGE, help="which effects the scene calls for, and what they cost",
                                   description="Says how much each quantity changes without an effect, and what leaving it out saves.")
     add_scene(command)
@@ -28,7 +28,7 @@ def add(commands: Any) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """Prints the rows, and what follows from them."""
+    """Prints the rows and the verdicts."""
     plot = str(Path(given.file).with_suffix(".bill.png")) if given.plot == "" else given.plot
     if plot and Path(plot).suffix not in PICTURES:
         raise ValueError(f"{plot} must end in one of {', '.join(PICTURES)}")

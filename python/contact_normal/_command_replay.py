@@ -1,4 +1,4 @@
-"""`contact-normal replay`: makes the call of a dump again, by the program contact-normal-replay."""
+"""`contact-normal replay`: replays the call of a dump, by the program contact-normal-replay."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from typing import Any
 from ._library import candidates
 
 PROGRAM = "contact-normal-replay"
-# Added to the number of the signal that ended the program, as shells do.
+# The exit code is this plus the number of the signal that ended the program, as in shells.
 SIGNAL = 128
 
 
 def add(commands: Any) -> None:
-    """The command and its options."""
+    """Adds the command and its options."""
     command = commands.add_parser("replay", help="makes the call of a dump again",
                                   description="Makes the call of a dump again, by contact-normal-replay, whose exit code it returns.")
     command.add_argument("file", help="what a call with the option dump has written")
@@ -24,10 +24,10 @@ def add(commands: Any) -> None:
 
 
 def program() -> str:
-    """The program beside the library, or in bin beside its lib, or in PATH."""
+    """The program beside the library, in `bin` beside its `lib`, or in PATH."""
     library = Path(candidates()[0])
     folder = library.resolve().parent
-    # A name without a folder is the loader's to find.
+    # The loader finds a name without a folder.
     for place in (folder, folder.parent / "bin") if library.name != str(library) else ():
         found = shutil.which(PROGRAM, path=str(place))
         if found:

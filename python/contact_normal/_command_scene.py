@@ -1,4 +1,4 @@
-"""Options of the command line that several commands have: the surface, the bodies and the load."""
+"""Options that several commands share: the surface, the bodies and the load."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ import numpy as np
 from .surface import Gap, Heights, faults, gap, level, read
 
 ELASTIC = ("young_modulus", "shear_modulus", "poisson_ratio", "e_star")
-# A list of all options would hide what is wrong with them.
+# A usage with all options would hide the error message.
 USAGE = "%(prog)s FILE [options]; %(prog)s --help lists them"
 LOADS = ("force", "approach", "mean_pressure")
 
 
 def add_scene(command: argparse.ArgumentParser) -> None:
-    """The options of a surface, bodies and a load."""
+    """Adds the options of a surface, bodies and a load."""
     surface = command.add_argument_group("surface")
     surface.add_argument("file", help="heights: .npy, .npz, text, .nc; .x3p, .sur and more by SurfaceTopography")
     surface.add_argument("--gap", action="store_true",
@@ -46,7 +46,7 @@ def add_scene(command: argparse.ArgumentParser) -> None:
 
 
 def add_effects(command: argparse.ArgumentParser) -> None:
-    """The options of effects."""
+    """Adds the options of effects."""
     effects = command.add_argument_group("effects")
     effects.add_argument("--period", choices=("x", "y", "xy", "none"),
                          help="the grid is one period of a scene that repeats itself; by default what the file says, else none")
@@ -58,13 +58,13 @@ def add_effects(command: argparse.ArgumentParser) -> None:
 
 
 def effects_of(given: argparse.Namespace, period: str | None) -> dict[str, Any]:
-    """Effects as the functions of the package take them, beside the period of a gap."""
+    """Effects as the functions of the package take them, with the period of a gap."""
     coating = tuple(tuple(layer) if layer else None for layer in (given.coating_1, given.coating_2))
     return {"period": period, "pressure_limit": given.pressure_limit, "layer": given.layer, "coating": coating if any(coating) else None}
 
 
 def _period_of(found: Gap | Heights, given: argparse.Namespace) -> str | None:
-    """The period that the options name, or that of the file."""
+    """The period of the options, or that of the file."""
     if given.period is not None:
         return None if given.period == "none" else str(given.period)
     if found.period:
@@ -73,7 +73,7 @@ def _period_of(found: Gap | Heights, given: argparse.Namespace) -> str | None:
 
 
 def gap_of(given: argparse.Namespace) -> Gap:
-    """The undeformed distance that the options name, with the period that they or the file say."""
+    """The undeformed distance of the options, with the period of the options or of the file."""
     if given.gap and Gap.is_in(given.file):
         for name in ("dx", "dy", "axes", "top_first", "variable", "hole", "faults", "level"):
             if getattr(given, name) not in (None, False):
@@ -101,7 +101,7 @@ def gap_of(given: argparse.Namespace) -> Gap:
 
 
 def _heights_of(given: argparse.Namespace) -> Heights:
-    """What the file holds, with what the options say of it."""
+    """The heights of the file, with the settings of the options."""
     said: dict[str, Any] = {}
     if given.hole is not None:
         said["fill"] = given.hole

@@ -17,7 +17,7 @@ from ._units import with_unit
 
 
 def add(commands: Any) -> None:
-    """The command and its options."""
+    """Adds the command and its options."""
     command = commands.add_parser("solve", usage=USAGE, help="pressures and contact area of a surface",
                                   description="Finds the pressures and the contact area of a surface that is pressed onto a plane.")
     add_scene(command)
@@ -52,7 +52,7 @@ def run(given: argparse.Namespace) -> int:
 
 
 def told(result: Result) -> list[tuple[str, str]]:
-    """Names and values of what is printed."""
+    """The names and values that are printed."""
     (my, mx), units, report = result.pressure.shape, result.units, result.report
     share = 100.0 * report["contact_count"] / (my * mx)
 
@@ -79,7 +79,7 @@ def told(result: Result) -> list[tuple[str, str]]:
 
 
 def _hints(given: argparse.Namespace, period: str | None, result: Result) -> list[tuple[str, str]]:
-    """Options that may help where one element carries all, or where contact is at the border."""
+    """Options that may help if one element carries most of the force, or if contact reaches the border."""
     if given.gap:
         return []
     few = {"ONE_ELEMENT", "SPIKE"} & set(result.warnings)

@@ -23,7 +23,7 @@ _MEANINGS = {
 
 
 def add(commands: Any) -> None:
-    """The command and its options."""
+    """Adds the command and its options."""
     command = commands.add_parser("creep-table", help="a table of creep forces of Hertz ellipses",
                                   description="Computes creep forces in steady rolling; axes are lists as 0,0.5,1 or ranges as 0:1:5.")
     command.add_argument("file", nargs="?", help="a NetCDF file; what was begun goes on where it ended; by default the table is printed")
@@ -37,7 +37,7 @@ def add(commands: Any) -> None:
 
 
 def axis(name: str, text: str) -> list[float]:
-    """The values of an axis: a list as 0,0.5,1 or a range as first:last:count."""
+    """The values of an axis: a list as 0,0.5,1, or a range as first:last:count."""
     try:
         if ":" in text:
             first, last, count = text.split(":")

@@ -1,4 +1,4 @@
-"""The constants of include/contact_normal.h, without the prefix CONTACT_NORMAL_, and their names as options take them."""
+"""The constants of include/contact_normal.h without the prefix CONTACT_NORMAL_, and their names in options."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ INFEASIBLE, NOT_POSITIVE_DEFINITE, OUT_OF_MEMORY, INFLUENCE_CHANGED, INTERNAL = 
 ABI_VERSION = 2
 VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH = 0, 2, 0
 
-# Structs, for contact_normal_init.
+# Kinds of structs, for contact_normal_init.
 KIND_SCENE, KIND_OPTIONS, KIND_FIELDS, KIND_REPORT, KIND_ACCURACY, KIND_INFLUENCE, KIND_ROW_TABLES, KIND_LAYER = range(1, 9)
 KIND_PRESSURE_LIMIT, KIND_PERIOD, KIND_PATCHES, KIND_COATING, KIND_FRICTION, KIND_FRICTION_RESULTS = range(9, 15)
 KIND_STRESS_OUTPUTS, KIND_STRESS_MAXIMUM, KIND_LEDGER_ROW, KIND_PRICE, KIND_HERTZ_SOLUTION, KIND_CYCLE = range(15, 21)
@@ -49,7 +49,7 @@ OBSTACLE_NONE, OBSTACLE_SINGULAR, OBSTACLE_ROUND_OFF, OBSTACLE_ELEMENTS, OBSTACL
 OBSTACLE_STEP = 6
 LIMITED_BY_UNKNOWN, LIMITED_BY_GRID, LIMITED_BY_TOLERANCE = 0, 1, 2
 
-# The options whose values have names: `method="AUTO"` is `method=METHOD_AUTO`.
+# The options whose values have names: `method="AUTO"` means `method=METHOD_AUTO`.
 NAMED_OPTIONS = ("method", "smoother", "active_set", "initial_guess", "criterion", "precision", "motion", "law", "start", "form", "friction_law", "friction_branch")
 
 

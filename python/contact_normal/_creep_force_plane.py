@@ -20,7 +20,7 @@ AXES = ("axis_ratio", "poisson_ratio", "phi", "eta", "xi")
 _MOTION = "STEADY_ROLLING"
 # The pressure of an element of an ellipse is a mean over this number of points along each side.
 _PLACES = 4
-# The names that a surface must have, beside a load, and those that it may have.
+# The names that a surface must have in addition to a load, and those that it may have.
 _NEEDED = ("h", "dx", "dy", "shear_modulus", "poisson_ratio", "coefficient")
 _MAY = ("rolling_direction", "spin_centre", "spin_offset")
 _KNOWN = (*_NEEDED, *_MAY, "force", "approach")

@@ -46,15 +46,14 @@ def creep_force_table(
 ) -> CreepForceTable:
     """Computes a table of creep forces in steady rolling: of Hertz ellipses, or of a surface.
 
-    Of ellipses with semi-axes a in the direction of rolling and b across, of like bodies with shear modulus G, all is relative, with
-    c = sqrt(a b)::
+    For ellipses with semi-axes a in the rolling direction and b across, and for like bodies with shear modulus G, all values are relative, with c = sqrt(a b)::
 
         xi  = (G c^2/(mu N)) times the longitudinal creepage        force_x = Fx/(mu N)
         eta = (G c^2/(mu N)) times the lateral creepage             force_y = Fy/(mu N)
         phi = (G c^3/(mu N)) times the spin                         moment  = Mz/(mu N c)
 
-    so that nothing else matters than a/b and the Poisson ratio, and Kalker's linear theory reads force_x = -C11 xi,
-    force_y = -C22 eta - C23 phi, moment = C23 eta - C33 phi. Of a surface creepages, spin, forces and moments are as they are.
+    so that they depend on a/b and the Poisson ratio only. Kalker's linear theory is then force_x = -C11 xi, force_y = -C22 eta - C23 phi, moment = C23 eta -
+    C33 phi. For a surface creepages, spin, forces and moments have the units of the input.
 
     Symmetry gives the other entries. For ellipses xi and phi are >= 0: (-xi, eta, phi) has (-force_x, force_y, moment),
     and (xi, -eta, -phi) has (force_x, -force_y, -moment). For a surface of like bodies phi >= 0 is enough: (-xi, -eta,
@@ -68,25 +67,25 @@ def creep_force_table(
     Parameters
     ----------
     path : path, optional
-        A NetCDF file. Parts stand in the folder `<path>.parts` as long as it is not complete: the same call goes on from them, and reads
-        the file once it is there. Needs xarray and netCDF4 (`pip install 'contact-normal[tables]'`). None: nothing is written.
+        A NetCDF file. Until it is complete, its parts are in the folder `<path>.parts`: the same call continues from them, and reads the file if it exists.
+        Needs xarray and netCDF4 (`pip install 'contact-normal[tables]'`). None: no file is written.
     xi, eta, phi : array_like
-        Axes of the table, increasing.
+        Increasing axes of the table.
     axis_ratio, poisson_ratio : array_like
-        a/b, increasing, and Poisson ratios; not for a surface.
+        Increasing a/b, and Poisson ratios; not for a surface.
     surface : mapping, optional
         "h" (my, mx), "dx", "dy", "force" or "approach", "shear_modulus", "poisson_ratio" as for `solve`, and "coefficient" of friction;
         also "rolling_direction", "spin_centre" and "spin_offset".
     elements : int
-        Along each side of the rectangle around an ellipse.
+        Elements along each side of the rectangle around an ellipse.
     tolerance : float
-        Of the residual of each entry.
+        Tolerance of the residual of each entry.
     workers : int
-        Processes, 1: this one, 0: one for each core. With more than 1 the calling script needs `if __name__ == "__main__":`.
+        Number of processes. 1: only this one, 0: one for each core. With more than 1 the calling script needs `if __name__ == "__main__":`.
     client : distributed.Client, optional
-        A Dask cluster to compute on, in the place of processes here.
+        A Dask cluster that computes instead of processes on this machine.
     progress : callable or bool, optional
-        Called as progress(entries done, all entries); what it raises ends the call, and its parts stay. True: draws a bar on stderr.
+        Called as progress(finished entries, all entries). An exception in it ends the call, and finished parts remain. True: draws a bar on stderr.
 
     Returns
     -------
@@ -157,7 +156,7 @@ def _workers(given: int) -> int:
 
 
 def _planes(plan: Plan, journal: store.Journal | None, workers: int, client: Any, progress: Any) -> dict[int, Any]:
-    """All planes, those that were done before and new ones."""
+    """All planes, earlier and new ones."""
     done = journal.done() if journal else {}
     missing = [index for index in range(plan.planes) if index not in done]
     each = len(plan.eta) * len(plan.xi)
@@ -181,11 +180,11 @@ def _planes(plan: Plan, journal: store.Journal | None, workers: int, client: Any
 
 
 def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iterator[tuple[int, Any]]:
-    """The planes that are missing, in the order in which they are done."""
+    """The missing planes, in the order in which they are finished."""
     if client is None and workers == 1:
         yield from ((index, plane(plan, index)) for index in missing)
         return
-    # No lock stands before it: a process that was killed may have held that.
+    # There is no lock, because a process that was killed might have held it.
     stop = multiprocessing.RawValue("b", 0) if client is None else None
     if client is not None:
         executor = client.get_executor()
@@ -197,14 +196,14 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
         jobs.update((executor.submit(_at_work if client is None else plane, plan, index), index) for index in missing)
 
     try:
-        # By a worker: a signal that interrupts an executor leaves it half begun.
+        # A worker calls it, because a signal that interrupts an executor leaves it half started.
         made(submit)
         done = concurrent.futures.as_completed(jobs)
         while (job := made(partial(next, done, None))) is not None:
             yield jobs[job], job.result()
         stop = None
     finally:
-        # The jobs that are not done are not needed any more.
+        # The unfinished jobs are not needed any more.
         if stop is not None:
             stop.value = 1
         else:
@@ -213,12 +212,12 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
         made(partial(executor.shutdown, wait=client is None))
 
 
-# Held by a worker while it is not computing. One that ended while it sends a result would leave the other side waiting for the rest.
+# A worker releases it while it computes. A worker that ends while it sends a result would leave the other side waiting for the rest.
 _sending = threading.Lock()
 
 
 def _at_work(plan: Plan, index: int) -> Any:
-    """As `plane`, in a worker: it may be ended meanwhile."""
+    """`plane` in a worker, which may be ended meanwhile."""
     _sending.release()
     try:
         return plane(plan, index)
@@ -259,6 +258,6 @@ def _assembled(plan: Plan, planes: Mapping[int, Mapping[str, Any]]) -> CreepForc
 
 
 def _are_alike(grid: Mapping[str, Any]) -> bool:
-    """Whether the bodies are alike. Then pressures cause no sideways displacement."""
+    """Whether the bodies are alike. Then pressures cause no tangential displacements."""
     shear, poisson = (np.broadcast_to(np.asarray(grid[name], dtype=float), (2,)) for name in ("shear_modulus", "poisson_ratio"))
     return bool((1.0 - 2.0 * poisson[0]) / shear[0] == (1.0 - 2.0 * poisson[1]) / shear[1])

@@ -1,7 +1,7 @@
 """Calls with callbacks on daemon threads, at the end of the process.
 
-The interpreter ends a daemon as soon as it asks for the interpreter, with an exception that passes all frames. In a callback these are frames
-of the library, which does not let it pass: the process would abort. So at the end such calls are cancelled and waited for.
+The interpreter ends a daemon thread that asks for the interpreter, with an exception through all frames. In a callback some frames belong to the library, which
+does not let it pass, so that the process would abort. So at the end of the process these calls are cancelled and waited for.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from contextlib import AbstractContextManager, nullcontext
 from ._library import library
 from ._structs import LogCallback
 
-# Seconds that the end of the process waits at most: most cycles and set-ups take less. A callback after that aborts.
+# The longest time in seconds that the end of the process waits: most cycles and set-ups take less. A later callback aborts.
 _LAST_CYCLE = 10.0
 
-# Whether a callable ever got messages of the library.
+# Whether a callable has ever received messages of the library.
 has_logged = threading.Event()
 _calls: set[object] = set()
 _ending = threading.Event()
@@ -38,7 +38,7 @@ class _Call:
 
 
 def within(has_callbacks: bool) -> AbstractContextManager[None]:
-    """Marks a call of the library on this thread, if its callbacks have to be waited for."""
+    """Marks a call of the library on this thread, if its callbacks must be waited for."""
     return _Call() if has_callbacks and threading.current_thread().daemon else _NOTHING
 
 
@@ -48,15 +48,15 @@ def is_to_end() -> bool:
 
 
 def forget() -> None:
-    """In a forked process, which has none of these threads."""
+    """In a forked process, which has none of these threads: forgets the calls."""
     _calls.clear()
 
 
 def end() -> None:
-    """Cancels the calls with callbacks at the next of these, and waits for them. A daemon that begins another one ends, as the interpreter would end it."""
+    """Cancels calls at their next callback, and waits for them. A daemon that begins another call ends, as the interpreter would end it."""
     _ending.set()
     if has_logged.is_set():
-        # Calls without callbacks go on, and nobody hears their messages. One message may be on its way.
+        # Calls without callbacks continue without messages. One message may be on its way.
         library.contact_normal_set_log(LogCallback(), 1, None)
         time.sleep(0.05)
     last = time.monotonic() + _LAST_CYCLE

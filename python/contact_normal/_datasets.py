@@ -1,4 +1,4 @@
-"""Results as datasets of xarray, with names and units."""
+"""Results as xarray datasets, with names and units."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ._solved import Solved
     from ._stress import SubsurfaceStress
 
-# Of each field what it is, and the kind of its unit.
+# The description of each field, and the kind of its unit.
 _FIELDS = {
     "pressure": ("pressure", "pressure"),
     "deformed_distance": ("deformed distance", "length"),

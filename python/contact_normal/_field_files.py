@@ -1,4 +1,4 @@
-"""Writes a result into a file, whose ending says the format."""
+"""Writes a result into a file in the format of its ending."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def write_fields(path: str | Path, result: Result) -> None:
     ValueError
         If the ending is none of these.
     ImportError
-        If the format needs a package that is not installed; the text names it.
+        If the format needs a package that is not installed; the message names it.
     """
     path = Path(path)
     if path.suffix == ".nc":
@@ -44,14 +44,14 @@ def write_fields(path: str | Path, result: Result) -> None:
 
 
 def refuse_unless_writable(path: str | Path) -> None:
-    """Refuses a file that cannot be written, before a long solve is spent on it.
+    """Refuses a file that cannot be written, before a long solve.
 
     Raises
     ------
     OSError
-        If its folder does not exist or may not be written.
+        If its folder does not exist or is not writable.
     ImportError
-        If its format needs a package that is not installed; the text names it.
+        If its format needs a package that is not installed; the message names it.
     """
     path = Path(path)
     if not path.parent.is_dir():
@@ -76,7 +76,7 @@ def _meshio(path: Path) -> Any:
 
 
 def _write_mesh(path: Path, result: Result) -> None:
-    """One quadrilateral for each element, with its numbers."""
+    """Writes one quadrilateral for each element, with its values."""
     meshio = _meshio(path)
     my, mx = result.pressure.shape
     x, y = (np.append(centres - 0.5 * d, centres[-1] + 0.5 * d) for centres, d in ((result.x, result.dx), (result.y, result.dy)))
@@ -88,7 +88,7 @@ def _write_mesh(path: Path, result: Result) -> None:
 
 
 def save(path: str | Path, plot: Callable[[], Any]) -> None:
-    """Saves what `plot` draws, in the style of this package."""
+    """Saves the picture of `plot`, in the style of this package."""
     from ._style import matplotlib_style
 
     with matplotlib_style():

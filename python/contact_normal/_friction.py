@@ -30,14 +30,14 @@ _KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "inf
 
 
 def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[Any, list[Any], Remarks]:
-    """A `contact_normal_friction`, the arrays that it points to, and what the caller should know of it; `length` is half of the longer side of the grid."""
+    """A `contact_normal_friction`, the arrays that it points to, and remarks for the caller; `length` is half of the longer side of the grid."""
     if not isinstance(value, Mapping):
         raise TypeError(f"friction is {value!r}; it must be a mapping of {', '.join(_KNOWN)}")
     unknown = [str(name) for name in value if name not in _KNOWN]
     if unknown:
         raise ValueError(f"friction has {', '.join(sorted(unknown))}; it may have {', '.join(_KNOWN)}")
     given = {name: one for name, one in value.items() if one is not None}
-    # The set-up of a Solver reads tables alone. A layer bounds tractions beside the coefficient, not in its place.
+    # The set-up of a Solver may read tables only. A layer limits tractions in addition to the coefficient, not instead of it.
     if "coefficient" not in given and not (_OF_SET_UP & set(given) and set(given) <= _OF_SET_UP | {"motion", "compliance", *_OF_A_STEP}):
         raise ValueError("friction has no coefficient; without friction leave it out, or give a coefficient of 0")
     effect = initialised("friction")
@@ -80,7 +80,7 @@ def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[A
 
 
 def _without_unknown(creepage: tuple[Any, Any], forces: tuple[Any, Any]) -> tuple[Any, Any]:
-    """Creepages with 0 in the place of None, which stands where the force is given."""
+    """Creepages with 0 instead of None, which means that the force is given."""
     for k, one in enumerate(creepage):
         if one is None and forces[k] is None:
             raise ValueError(f"friction['creepage'][{k}] and friction['force'][{k}] are None; give one of them")
@@ -89,7 +89,7 @@ def _without_unknown(creepage: tuple[Any, Any], forces: tuple[Any, Any]) -> tupl
 
 
 def _one_or_each(effect: Any, name: str, value: Any, shape: tuple[int, int]) -> list[Any]:
-    """A number, or one per element: then the member has an s more."""
+    """One number, or one per element: then the name of the member ends in s."""
     if np.ndim(value) == 0:
         setattr(effect, name, number(f"friction['{name}']", value))
         return []
@@ -99,7 +99,7 @@ def _one_or_each(effect: Any, name: str, value: Any, shape: tuple[int, int]) -> 
 
 
 def _known(what: str, value: Any, names: tuple[str, ...]) -> dict[str, Any]:
-    """What a mapping has of these names; refuses others."""
+    """The entries of a mapping with these names; others are refused."""
     if not isinstance(value, Mapping):
         raise TypeError(f"{what} is {value!r}; it must be a mapping of {', '.join(names)}")
     unknown = [str(name) for name in value if name not in names]
@@ -109,7 +109,7 @@ def _known(what: str, value: Any, names: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _law(effect: Any, value: Any) -> None:
-    """How the coefficient falls with the slip velocity."""
+    """Sets the law by which the coefficient falls with the slip velocity."""
     if value is None:
         return
     given = _known("friction['law']", value, ("kind", *_OF_LAW, *_PAIRS_OF_LAW))
@@ -127,7 +127,7 @@ def _law(effect: Any, value: Any) -> None:
 
 
 def _layer(effect: Any, value: Any) -> None:
-    """A layer that yields."""
+    """Sets a plastic layer."""
     if value is None:
         return
     given = _known("friction['layer']", value, _OF_LAYER)
@@ -137,7 +137,7 @@ def _layer(effect: Any, value: Any) -> None:
 
 
 def _influence(effect: Any, given: Mapping[str, Any]) -> list[Any]:
-    """Own coefficients."""
+    """Sets own coefficients."""
     if "influence" not in given:
         if "influence_cross" in given:
             raise ValueError("friction['influence_cross'] is given without friction['influence']")
@@ -159,7 +159,7 @@ def _influence(effect: Any, given: Mapping[str, Any]) -> list[Any]:
 
 
 def _three(name: str, tables: Any) -> Any:
-    """Three tables, with their scale or without."""
+    """Three tables, with or without a scale."""
     count = len(tables) if isinstance(tables, (tuple, list)) or np.ndim(tables) else 0
     if not count:
         raise TypeError(f"friction['{name}'] is {tables!r}; it must be (xx, yy, xy) or (xx, yy, xy, scale)")
@@ -169,7 +169,7 @@ def _three(name: str, tables: Any) -> Any:
 
 
 def _row_tables(effect: Any, given: Mapping[str, Any]) -> list[Any]:
-    """Own coefficients that differ per loaded row."""
+    """Sets own coefficients that differ per loaded row."""
     tables = given.get("row_tables")
     if tables is None:
         return []

@@ -28,30 +28,30 @@ if TYPE_CHECKING:
 
 
 class FrictionBatch(WithUnits):
-    """What `friction_batch` found: of each entry its numbers, and the fields if they were asked for.
+    """The results of `friction_batch`: the values of each entry, and fields if they are wanted.
 
     Attributes
     ----------
     status : ndarray of int, (n,)
-        Of each entry: 0 solved; > 0 stopped early, or `CANCELLED`: not solved; < 0 refused. What was not solved has NaN.
+        Status of each entry: 0 solved; > 0 stopped early, or `CANCELLED`: not solved; < 0 refused. The values of entries that are not solved are NaN.
     message : str
-        A line "entry 3: ..." for each entry that is not solved; then what warnings mean, and what numbers may be meant otherwise.
+        A line "entry 3: ..." for each entry that is not solved, then warnings, and remarks on values that may be in a wrong unit.
     force, creepage : ndarray, (n, 2)
-        The tangential forces on body 1, and the creepages, given or found.
+        The tangential forces on body 1, and the creepages, given or computed.
     moment : ndarray, (n,)
-        About the centre of spin.
+        The moment about the centre of spin.
     residual, gap, products : ndarray, (n,)
         As `tangential_residual`, `tangential_gap` and `tangential_products` of a report.
     stick_count, slip_count : ndarray of int, (n,)
-        Elements that stick, that slip.
+        Numbers of elements that stick and that slip.
     traction, slip : ndarray, (n, 2, my, mx), or None
-        With `fields=True`.
+        Tractions and slips, with `fields=True`.
     stick_slip : ndarray of int, (n, my, mx), or None
-        With `fields=True`: 0 exterior, 1 stick, 2 slip, 3 slip in a layer that yields.
+        With `fields=True`: 0 exterior, 1 stick, 2 slip, 3 slip in a plastic layer.
     friction_coefficient, yield_limit : ndarray, (n, my, mx), or None
-        With `fields=True`: what particles of the interface carry, with a law of friction or a layer that yields; else zeros.
+        With `fields=True`: the state of the particles of the interface, with a law of friction or a plastic layer; otherwise zeros.
     report : dict
-        Of the normal problem.
+        Report of the normal problem.
     units : (str, str) or None
         Names of the units of lengths and forces. May be set.
     """
@@ -82,7 +82,7 @@ class FrictionBatch(WithUnits):
         return f"<FrictionBatch: {solved} of {len(self.status)} entries solved{largest}{message}>"
 
     def plot(self, over: str | None = None, axes: Axes | None = None) -> Axes:
-        """Draws the tangential forces over the creepage `over`, "x" or "y", by default the one that changes more; `axes` as for `Result.plot`."""
+        """Draws the tangential forces over the creepage `over`, "x" or "y", by default the one that varies more; `axes` as for `Result.plot`."""
         from ._plot_lines import plot_creep_curve
 
         return plot_creep_curve(self, over, axes)
@@ -122,34 +122,33 @@ def friction_batch(
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[SolveOptions],
 ) -> FrictionBatch:
-    """Solves many tangential problems of one scene: of each entry the creepages (or forces) and the spin are its own.
+    """Solves many tangential problems of one scene: each entry has its own creepages (or forces) and spin.
 
-    The normal problem is solved once, or not at all if there are pressures. As many entries are solved at a time as `threads` says;
-    neighbours in the list should be neighbours in the motion, for an entry that differs little from the one before starts from its
-    tractions.
+    The normal problem is solved once, or not at all if pressures are given. `threads` entries are solved at a time. Neighbours in the list should have similar
+    motions, because an entry that differs little from the one before starts from its tractions.
 
     Parameters
     ----------
     h : array_like, (my, mx), or None
-        Undeformed distance; None where `pressure` is given.
+        Undeformed distance; None if `pressure` is given.
     dx, dy : float
         Element sizes.
     entries : array_like, (n, 3)
-        Of each entry what is prescribed in x and in y, and the spin.
+        For each entry the prescribed values in x and in y, and the spin.
     friction : mapping
-        As for `solve`. Its creepages, forces and spin are not used; in a direction whose "force" is not None, entries are forces. Creepages
-        are lengths, and spins angles, where "motion" is "SHIFT", the default.
+        As for `solve`. Its creepages, forces and spin are not used. In a direction whose "force" is not None, entries are forces. Creepages are lengths, and
+        spins angles, if "motion" is "SHIFT", the default.
     approach, force, mean_pressure : float
-        Exactly one of them, where there is no `pressure`.
+        Exactly one of them, unless there is a `pressure`.
     pressure : array_like, (my, mx), optional
-        The pressures of a normal problem that is solved already.
+        The pressures of a normal problem that is already solved.
     fields : bool
-        Whether tractions and slip are wanted, too.
+        Whether tractions and slip are wanted.
     progress : callable or bool, optional
-        Called with a `Progress` about once for each entry, whose `cycles` counts entries that are done; a true result cancels. True: draws
-        a bar on stderr.
+        Called with a `Progress` about once for each entry, whose `cycles` is the number of finished entries; a true result cancels. True: draws a bar on
+        stderr.
     shear_modulus, poisson_ratio, young_modulus, influence, layer, pressure_limit, coating, adhesion, units, **given
-        As for `solve`. With `influence` the friction needs coefficients of its own, too.
+        As for `solve`. With `influence` friction also needs its own coefficients.
 
     Returns
     -------
@@ -158,7 +157,7 @@ def friction_batch(
     Raises
     ------
     ContactNormalError
-        If the call itself is refused; an entry that is refused has a negative `status`.
+        If the call itself is refused; a refused entry has a negative `status`.
     """
     struct, units = options(given), checked(units)
     scene, pressures = with_pressures(
@@ -174,7 +173,7 @@ def table_of(
     scene: Scene, pressures: Doubles | None, entries: Any, struct: Any, progress: Callable[[Progress], Any] | bool | None, fields: bool,
     handle: Handle | None, units: Any = None,
 ) -> FrictionBatch:
-    """Solves a table of entries, with a handle or without."""
+    """Solves a table of entries, with or without a handle."""
     table = doubles("entries", entries, dimensions="(n, 3)")
     if table.shape[1] != 3:
         raise ValueError(f"entries has shape {table.shape}; it must be (n, 3)")

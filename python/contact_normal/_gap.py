@@ -1,4 +1,4 @@
-"""A gap: the undeformed distance of two surfaces on a grid, with what a solve, a picture or a program in C or Fortran needs of it."""
+"""A gap: the undeformed distance of two surfaces on a grid, with the data that a solve, a picture or a program in C or Fortran needs."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from ._arguments import Doubles
     from ._result import Result
 
-# What every file of a gap begins with.
+# The first text of each file of a gap.
 _HEAD = "# Undeformed distance on a grid, made by contact-normal"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Gap(Short):
-    """The undeformed distance of two surfaces on a grid of rectangular elements; x and y of it are the centres of columns and rows.
+    """The undeformed distance of two surfaces on a grid of rectangular elements; its x and y are the centres of columns and rows.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Gap(Short):
     dx, dy : float
         Element sizes, lengths.
     middle : (float, float)
-        Where the middle of the grid lies in the coordinates of the surfaces.
+        The middle of the grid in the coordinates of the surfaces.
     period : {"x", "y", "xy"} or None
         Directions in which the grid is one period of a scene that repeats itself.
     units : (str, str) or None
@@ -63,13 +63,12 @@ class Gap(Short):
 
     @property
     def area(self) -> float:
-        """Area of the grid, which is the number of elements times the size of one. A mean pressure is a force over this area."""
+        """Area of the grid: the number of elements times the area of one. A mean pressure is a force over this area."""
         return float(self.h.size * self.dx * self.dy)
 
     def solve(self, **scene: Any) -> Result:
-        """Presses the two surfaces together: `contact_normal.solve` of this gap. The arguments are a load, elastic constants, effects and
-        options. Places of the result are in the coordinates of the surfaces; those of arguments, as `spin_centre`, are relative to the
-        middle of the grid."""
+        """Presses the two surfaces together: `contact_normal.solve` for this gap. The arguments are a load, elastic constants, effects and options. Places of
+        the result are in the coordinates of the surfaces; those of arguments, as `spin_centre`, are relative to the middle of the grid."""
         from ._solve import solve
 
         result = solve(self.h, self.dx, self.dy, **{"period": self.period, "units": self.units, **scene})
@@ -79,8 +78,8 @@ class Gap(Short):
     def write(self, path: str | os.PathLike[str], comment: str = "") -> None:
         """Writes the gap as text, which the examples `gap.c` and `gap.f90` read.
 
-        The file has two lines that begin with "#", then `mx my dx dy`, then one undeformed distance a line, x fastest; "inf": no surface. The
-        second line has the period, if there is one, and the comment. Middle and units are not in the file.
+        The file has two lines that begin with "#", then `mx my dx dy`, then one undeformed distance per line, x fastest; "inf": no surface. The second line has
+        the period, if there is one, and the comment. The middle and the units are not in the file.
         """
         if "\n" in comment or "\r" in comment:
             raise ValueError("comment has several lines; it must be one")
@@ -91,13 +90,13 @@ class Gap(Short):
 
     @staticmethod
     def is_in(path: str | os.PathLike[str]) -> bool:
-        """Whether `write` wrote the file."""
+        """Whether a file was written by `write`."""
         with open(path, "rb") as file:
             return file.readline().rstrip() == _HEAD.encode()
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Gap:
-        """The gap of a file that `write` wrote."""
+        """The gap of a file that was written by `write`."""
         lines = Path(path).read_text(encoding="utf-8").rstrip("\n").split("\n")
         if len(lines) < 3 or lines[0] != _HEAD:
             raise ValueError(f"{path} does not begin with {_HEAD!r}: it is no file of a gap")

@@ -48,6 +48,6 @@ def scene_and_options(h: Any, dx: Any, dy: Any, given: Mapping[str, Any]) -> tup
     checked(rest.pop("units", None))
     effects = effects_in(rest)
     loads = {name: rest.pop(name, None) for name in _LOADS}
-    # Before the scene: a misspelt load is then refused as an unknown option, not as a missing load.
+    # This is done before the scene, so that a misspelt load is refused as an unknown option, not as a missing load.
     struct = options(rest)
     return Scene(h, dx, dy, effects=effects, **loads), struct

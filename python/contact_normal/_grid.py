@@ -1,4 +1,4 @@
-"""Where elements are."""
+"""The places of elements."""
 
 from __future__ import annotations
 

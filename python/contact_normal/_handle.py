@@ -1,4 +1,4 @@
-"""The library's handle of a solver, which is freed once it is closed and no call uses it."""
+"""The library's handle of a solver, which is freed after it is closed and no call uses it."""
 
 from __future__ import annotations
 
@@ -18,13 +18,12 @@ if TYPE_CHECKING:
 class Handle:
     """The address of a solver of the library.
 
-    A call keeps it in use until it returns, also when nobody waits for it any more: closed meanwhile, it is freed then. One that is dropped
-    is freed, too.
+    A call uses it until it returns, also if the call is given up. If it is closed meanwhile, it is freed then. A handle without references is freed, too.
     """
 
     def __init__(self) -> None:
         self._address = c_void_p()
-        # The same thread may enter it twice: what is freed within may close a solver.
+        # The same thread may acquire it twice, because freeing objects within it may close a solver.
         self._lock = threading.RLock()
         self._users = 0
         self._is_closed = False
@@ -32,11 +31,11 @@ class Handle:
         self._free: Callable[[], Any] | None = None
 
     def set_up(self, create: Callable[[Any], int]) -> int:
-        """The status of `create`, which is given the place for the address."""
+        """Calls `create` with the place for the address; returns its status."""
         status = create(byref(self._address))
         if self._address:
             free = weakref.finalize(self, library.contact_normal_solver_free, self._address)
-            # The end of the process frees it, too.
+            # The end of the process frees the handle anyway.
             free.atexit = False
             self._free = free
         return status
@@ -45,7 +44,7 @@ class Handle:
         return bool(self._address)
 
     def __enter__(self) -> tuple[c_void_p]:
-        """The address, as the first arguments of one call of the library."""
+        """The address, as first argument of a call of the library."""
         with self._lock:
             if self._is_closed:
                 raise ValueError("this solver is closed")
@@ -59,20 +58,20 @@ class Handle:
             self._free_if_unused()
 
     def wait(self) -> None:
-        """Waits for a call that was given up and has not returned yet."""
+        """Waits for a call that was given up and has not returned."""
         call = self._call
         if call is not None and call.given_up:
             call.wait()
 
     def close(self) -> None:
-        """Frees it, at once or when the call that uses it returns."""
+        """Frees the handle, at once or when the call that uses it returns."""
         with self._lock:
             self._is_closed = True
             self._free_if_unused()
 
     @property
     def _as_parameter_(self) -> c_void_p:
-        # What ctypes passes in its place.
+        # ctypes passes this instead of the handle.
         return self._address
 
     @property

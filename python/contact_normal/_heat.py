@@ -1,4 +1,4 @@
-"""Flash temperature: how warm friction makes the surfaces."""
+"""Flash temperature: the warming of the surfaces by friction."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ class FlashTemperature(NamedTuple):
     Attributes
     ----------
     rise : array, (2, my, mx)
-        Of body 1 and of body 2.
+        The rise of body 1 and of body 2.
     share : float
         The part of the heat that goes into body 1.
     largest : (float, float)
         The largest rise of each body.
     at : ((float, float), (float, float))
-        Where that is, (x, y) of each body, from the middle of the grid.
+        The place (x, y) of the largest rise of each body, relative to the middle of the grid.
     """
 
     rise: npt.NDArray[np.float64]
@@ -44,7 +44,7 @@ class FlashTemperature(NamedTuple):
 
 
 def _both(name: str, value: Any) -> Any:
-    """Two numbers, from one or from two."""
+    """Two numbers, from one or two values."""
     values = (value, value) if np.ndim(value) == 0 else tuple(value)
     if len(values) != 2:
         raise ValueError(f"{name} has {len(values)} values; it must be one number, or one of each body")
@@ -62,23 +62,23 @@ def flash_temperature(
     share: float | None = None,
     threads: int = 1,
 ) -> FlashTemperature:
-    """The steady flash temperature by a flux of heat through the contact of two bodies whose surfaces move in x.
+    """Computes the steady flash temperature by a heat flux through the contact of two bodies whose surfaces move in x.
 
     Parameters
     ----------
     heat_flux : array_like, (my, mx)
-        A power per area: of friction the traction times the speed of slip. Below 0 it cools.
+        Power per area: for friction the traction times the slip velocity. Negative values cool.
     dx, dy : float
         Element sizes.
     conductivity, diffusivity : float or pair
-        lambda (power per length and temperature) and kappa = lambda/(density times heat capacity) of both bodies.
+        lambda (power per length and temperature) and kappa = lambda/(density times heat capacity), for both bodies or for each.
     speed : float or pair
-        How fast each surface moves past the contact in +x; 0: it stands still. Of bodies that roll towards +x at V both are -V.
+        The velocity in +x of each surface relative to the contact; 0: the surface does not move. For bodies that roll towards +x at V both are -V.
     share : float, optional
-        The part of the heat that goes into body 1; by default that for which the largest temperatures of both are the same (Blok 1937),
-        and one half where no heat makes one of both warmer.
+        The part of the heat that goes into body 1. By default both bodies have the same largest temperature (Blok 1937); one half if no heat makes one of both
+        warmer.
     threads : int
-        1: one, 0: all cores.
+        1: one thread, 0: all cores.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What was known on each grid of a solve, and what it had cost."""
+"""The results on each grid of a solve, and their costs."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ if TYPE_CHECKING:
 
 
 class Ledger(list[dict[str, float]]):
-    """What was known on each grid and what it had cost: one dict per grid, coarsest first.
+    """The results on each grid and their costs: one dict per grid, coarsest first.
 
-    `estimated` is what "error_force" speaks of: "force", or "approach" where the force is prescribed.
+    `estimated` is the quantity of "error_force": "force", or "approach" if the force is prescribed.
 
     The keys are the members of `contact_normal_ledger_row`: "mx", "my", "cycles", "seconds", "work_units", "residual", "approach",
     "force", "max_pressure", "contact_area", "error_force", ... Estimated errors are absolute; a negative one is not known.
@@ -23,7 +23,7 @@ class Ledger(list[dict[str, float]]):
         self.estimated = estimated
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws the estimated relative errors of every grid against the seconds until it was solved, as the pictures of prices do.
+        """Draws the estimated relative errors of every grid over the seconds until it was solved, as the pictures of prices do.
 
         `axes` as for `Result.plot`.
         """

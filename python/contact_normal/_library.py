@@ -1,4 +1,4 @@
-"""Finds and loads the library, and compares it with this package."""
+"""Finds and loads the library, and checks that it suits this package."""
 
 from __future__ import annotations
 
@@ -125,10 +125,10 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
 
 
 def candidates() -> list[str]:
-    """The libraries that are tried, the first one that exists is loaded.
+    """The libraries that are tried; the first one that exists is loaded.
 
-    The one that the environment variable CONTACT_NORMAL_LIBRARY names and no other; else the one inside this package (a wheel),
-    the one built in this clone, those in `lib` (Windows: `bin`) of this Python's prefix and of the package's own, the system's.
+    If the environment variable CONTACT_NORMAL_LIBRARY is set, this is the only one. Otherwise they are the one inside this package (a wheel), the one built
+    in this clone, those in `lib` (Windows: `bin`) of this Python's prefix and of the package's own prefix, and the system's.
     """
     named = os.environ.get("CONTACT_NORMAL_LIBRARY")
     if named:
@@ -136,17 +136,17 @@ def candidates() -> list[str]:
     here = Path(__file__).resolve().parent
     prefixes = [Path(sys.prefix), *list(here.parents)[2:5]]
     found = [str(path) for path in places(here, prefixes, sys.platform) if path.exists()]
-    # That looks with programs of the system, as gcc.
+    # This uses programs of the system, as gcc.
     return found or [ctypes.util.find_library("contact_normal") or names(sys.platform).installed]
 
 
 def load() -> ctypes.CDLL:
-    """The library with its prototypes set.
+    """Loads the library, and sets its prototypes.
 
     Raises
     ------
     ImportError
-        If there is none, or it does not suit this package.
+        If there is none, or if it does not suit this package.
     """
     path = candidates()[0]
     try:
@@ -159,7 +159,7 @@ def load() -> ctypes.CDLL:
     version = library.contact_normal_abi_version()
     if version < ABI_VERSION:
         raise ImportError(f"{path} has ABI version {version}; this package needs {ABI_VERSION} or newer")
-    # Of the same version of the ABI structs may have grown.
+    # The structs may have grown within one version of the ABI.
     library.contact_normal_version.restype = c_char_p
     text = library.contact_normal_version().decode()
     if tuple(int(part) for part in re.findall(r"\d+", text)[:3]) < PACKAGE:
@@ -187,7 +187,7 @@ def initialised(name: str) -> Any:
     if name not in _INITIALISED:
         struct = kind()
         library.contact_normal_init(number, ctypes.byref(struct), ctypes.sizeof(kind))
-        # Only now: another thread may look for it at any time.
+        # The struct is complete here, because another thread may read it at any time.
         _INITIALISED[name] = struct
     return kind.from_buffer_copy(_INITIALISED[name])
 
@@ -213,14 +213,14 @@ class ContactNormalError(Exception):
         self.status, self.message = status, message
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Exceptions are made anew from their text: this one has two arguments.
+        # Exceptions are unpickled from their text, but this one has two arguments.
         return type(self), (self.status, self.message), self.__dict__
 
 
 def last_error() -> str:
-    """The message of the last call on this thread that did not return OK, or warned."""
-    # The library counts x first; arrays of Python have x last.
-    # A text with groups would import a module, which fails where the interpreter ends.
+    """The message of the last call on this thread with another status than OK, or with a warning."""
+    # In the library x is the first index, in arrays of Python the last one. A replacement text with groups would import a module, which fails at the end of the
+    # interpreter.
     return _ELEMENT.sub(lambda found: f"element [{found[2]}, {found[1]}]", library.contact_normal_last_error().decode())
 
 

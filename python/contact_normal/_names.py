@@ -1,4 +1,4 @@
-"""What the library's files are called on each platform, and where an installation puts them."""
+"""The file names of the library on each platform, and their places in an installation."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ class Names(NamedTuple):
     """File names of the shared library on one platform."""
 
     built: str
-    """What cargo builds, and what a wheel contains."""
+    """The file that cargo builds, and that a wheel contains."""
     installed: str
-    """What a program that was linked with the library loads: the name changes when the ABI breaks."""
+    """The file that a linked program loads: its name changes when the ABI breaks."""
     folders: tuple[str, ...]
-    """Where an installation has it, below its prefix."""
+    """The folders of the file in an installation, below the prefix."""
 
 
 def names(platform: str) -> Names:

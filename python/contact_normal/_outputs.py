@@ -25,7 +25,7 @@ _ROWS = LedgerRow * LEDGER_ROOM
 class Outputs:
     """New arrays for one problem and the structs that point to them; `pressure` and `contact` are the initial guess.
 
-    `of_effects` has those of the scene's effects alone: to clear and write those of friction takes some .25 ms of 10 on 256 x 256 elements.
+    `of_effects` has only those of the scene's effects, because clearing and writing those of friction takes some .25 ms of 10 on 256 x 256 elements.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class Outputs:
             self._start(pressure, contact, options, scene)
 
     def _start(self, pressure: Any, contact: Any, options: Any, scene: Scene | None) -> None:
-        """Takes an initial guess: the pressures, or the contact area, or both; or the contact area that is fixed."""
+        """Takes an initial guess: the pressures, the contact area, or both; or the fixed contact area."""
         if contact is not None:
             self.contact[:] = integers("contact", contact, self._shape)
         if pressure is not None:
@@ -67,7 +67,7 @@ class Outputs:
             options.initial_guess = INITIAL_GUESS_GIVEN
 
     def lend(self, struct: Any) -> None:
-        """Lets a struct point to the arrays of effects, by its members of their names."""
+        """Lets a struct point to the arrays of effects, in the members of their names."""
         for name, array in self.of_effects.items():
             if isinstance(getattr(struct, name), Array):
                 getattr(struct, name)[:] = [pointer(part) for part in array]

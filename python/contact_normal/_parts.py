@@ -1,4 +1,4 @@
-"""Many pieces of work in parts between which a signal is heard."""
+"""Divides many pieces of work into parts, between which signals are handled."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ _PART = 0.2
 
 
 def parts(count: int, first: int) -> Iterator[slice]:
-    """So many pieces of work in parts between which a signal is heard: each takes some tenths of a second, by the time of the one before.
+    """Divides `count` pieces of work into parts, between which signals are handled. Each part takes some tenths of a second, by the time of the one before.
 
-    There is one part at least, which may be empty.
+    There is at least one part, which may be empty.
     """
     begin, size = 0, first
     while True:

@@ -1,4 +1,4 @@
-"""Pictures of the surface, seen from above."""
+"""Pictures of the surface in a view from above."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from ._solved import Solved
 
 STICK, SLIP = (0.78, 0.87, 0.96), (0.99, 0.85, 0.74)
-# Lines of more segments are drawn as pixels in files of vectors.
+# Outlines with more segments are drawn as pixels in vector files.
 _SEGMENTS = 4000
-# Where this percentile of the pressures is less than half of the largest, colours end with it.
+# If this percentile of the pressures is less than half of the largest, colours end at it.
 _USUAL = 99.5
-# Negative pressures below this part of the largest are none, nor are forces below this part of others.
+# Negative pressures below this part of the largest count as 0, as do forces below this part of others.
 _ROUND_OFF = 1e-12
 
 
@@ -47,14 +47,14 @@ def plot_pressure(result: Result, axes: Axes | None) -> Axes:
 
 
 def _coloured(result: Result) -> tuple[Any, dict[str, Any]]:
-    """What `plot_pressure` draws, and its colours."""
+    """The values that `plot_pressure` draws, and their colours."""
     largest = float(np.abs(result.pressure).max(initial=0.0))
     if result.pressure.min(initial=0.0) >= -_ROUND_OFF * largest:
         colours = {"cmap": "viridis", "vmin": 0.0}
         usual = float(np.percentile(result.pressure[result.contact], _USUAL)) if result.contact.any() else 0.0
-        # Rough surfaces have a few peaks, beside which all else would be dark.
+        # Rough surfaces have a few peaks, with which all other pressures would be dark.
         return np.ma.masked_where(~result.contact, result.pressure), {**colours, "vmax": usual} if 0.0 < usual < 0.5 * largest else colours
-    # Bodies that stick also pull outside the contact area: both signs have colours of their own, and white is 0.
+    # With adhesion there is tension outside the contact area as well: both signs have their own colours, and white is 0.
     return result.pressure, {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
 
 
@@ -73,7 +73,7 @@ def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     _arrows(result, axes)
     _outline(axes, result.stick_slip > 0, x_edges, y_edges)
     _outline(axes, result.stick_slip == 1, x_edges, y_edges)
-    # What is round-off of the other part is 0.
+    # A force component that is round-off relative to the other one is 0.
     size = float(np.hypot(*result.tangential_force))
     fx, fy = (part if abs(part) > _ROUND_OFF * size else 0.0 for part in result.tangential_force)
     name_axes(axes, result.units)
@@ -83,7 +83,7 @@ def plot_traction(result: Solved, axes: Axes | None) -> Axes:
 
 
 def _arrows(result: Solved, axes: Axes) -> None:
-    """Some twenty arrows across the contact area, the longest somewhat longer than their distance, and what one of round length stands for."""
+    """Some twenty arrows across the contact area, the longest somewhat longer than their distance, and a key of round length."""
     rows, columns = np.nonzero(result.stick_slip > 0)
     across = max(np.ptp(rows), np.ptp(columns)) + 1 if rows.size else 1
     step = -(-int(across) // 20)
@@ -102,7 +102,7 @@ def _arrows(result: Solved, axes: Axes) -> None:
 
 
 def _outline(axes: Axes, contact: npt.NDArray[np.bool_], x_edges: Any, y_edges: Any) -> None:
-    """The border of the contact area along the edges of its elements: thin where elements are small, so that it does not cover them."""
+    """The border of the contact area along the edges of its elements; thin for small elements, so that it does not cover them."""
     from matplotlib.collections import LineCollection
 
     padded = np.pad(contact, 1)

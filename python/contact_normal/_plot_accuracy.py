@@ -1,4 +1,4 @@
-"""Pictures of what accuracy and effects cost, by matplotlib."""
+"""Pictures of the costs of accuracy and effects, by matplotlib."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 # Changes below this part of the target are not drawn.
 _LEAST = 1e-4
-# Over more decades only powers of ten have numbers.
+# Over more decades than this only powers of ten have labels.
 _DECADES = 2.0
 
 
@@ -29,7 +29,7 @@ def _error_axes(axes: Axes) -> None:
     axes.set(xscale="log", yscale="log", xlabel="time [s]", ylabel="relative error")
     first, last = axes.get_xlim()
     if last < 10.0**_DECADES * first:
-        # Few powers of ten: numbers between them have room, but not all nine.
+        # With few powers of ten there is room for labels between them, but not for all nine.
         between = (1.0, 2.0, 5.0) if last > 10.0 * first else (1.0, 2.0, 3.0, 5.0, 7.0)
         powers = 10.0 ** np.arange(np.floor(np.log10(first)), np.ceil(np.log10(last)))
         axes.xaxis.set_major_locator(FixedLocator(np.outer(powers, between).ravel().tolist()))
@@ -57,7 +57,7 @@ def plot_quantities(rows: Quantities, axes: Axes | None) -> Axes:
 
 
 def _called(rows: Bill | Prices | Quantities, quantity: str) -> str:
-    """What a quantity is called in words."""
+    """The name of a quantity in words."""
     return rows.estimated if quantity == "force" else quantity.replace("_", " ")
 
 
@@ -88,7 +88,7 @@ def plot_ledger(ledger: Sequence[dict[str, float]], estimated: str, axes: Axes |
 
 
 def _write_elements(axes: Axes, grids: list[tuple[float, tuple[int, int]]]) -> None:
-    """The elements of each grid, along the upper border; the finest ones first, and none where another is too near."""
+    """Writes the elements of each grid along the upper border, the finest ones first; labels that would overlap are left out."""
     if not grids:
         return
     places = sorted(dict((shape, (seconds, shape)) for seconds, shape in grids).values(), reverse=True)
@@ -141,7 +141,7 @@ def plot_bill(bill: Bill, axes: Axes | None) -> Axes:
             named.add(quantity)
     axes.axvline(bill.target, color="0.5", linestyle="--", linewidth=1)
     axes.annotate("target", (bill.target, 0.0), xycoords=("data", "axes fraction"), xytext=(3, 3), textcoords="offset points", fontsize=8)
-    # Changes far below the target are all the same.
+    # Changes far below the target need not be distinguished.
     axes.set(xscale="log", xlim=(max(axes.get_xlim()[0], _LEAST * bill.target), None), xlabel="relative change without the effect", yticks=range(len(singles)))
     axes.set_yticklabels([_bill_label(bill, omitted) for omitted in singles])
     axes.invert_yaxis()

@@ -38,7 +38,7 @@ def plot_section(result: Result, x: float | None, y: float | None, axes: Axes | 
 
 
 def _mark_borders(axes: Axes, places: Any) -> None:
-    # Many borders, of a rough surface, are thin lines, so that they do not cover the curve.
+    # The many borders of a rough surface are thin lines, so that they do not cover the curve.
     for place in places:
         axes.axvline(place, color=EDGE, linestyle=":", linewidth=1.2 if len(places) <= 12 else 0.4, zorder=0)
 
@@ -89,14 +89,14 @@ def plot_contact_area(results: Sequence[Solved], axes: Axes | None = None) -> Ax
     Parameters
     ----------
     results : sequence of Result
-        In any order; units are those of the first.
+        The results in any order; units are those of the first.
     axes : matplotlib.axes.Axes, optional
-        Where to draw; by default the axes of a new figure.
+        The axes to draw on; by default those of a new figure.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The axes, to add to or to save.
+        The axes, for additions or for saving.
     """
     if not isinstance(results, Sequence):
         raise TypeError(f"results is a {type(results).__name__}; it must be a sequence of results")

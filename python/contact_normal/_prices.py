@@ -1,4 +1,4 @@
-"""What accuracies cost, before they are paid for."""
+"""The costs of accuracies, before a solve."""
 
 from __future__ import annotations
 
@@ -24,29 +24,29 @@ OBSTACLES = ("", "singular", "below round-off", "too many elements", "too much m
 
 
 class Price(NamedTuple):
-    """What one accuracy costs; all of it is predicted.
+    """The predicted costs of one accuracy.
 
     Attributes
     ----------
     target : float
-        The relative error that is wanted.
+        The wanted relative error.
     shape : (my, mx)
-        Elements of the coarsest grid that does; (0, 0): not known.
+        Elements of the coarsest grid that suffices; (0, 0): not known.
     tolerance : float
-        The tolerance to ask for.
+        The tolerance of the solve.
     error : float
-        Relative error that this grid and tolerance leave; negative: not known.
+        Relative error with this grid and tolerance; negative: not known.
     seconds, seconds_one_thread : float
         With the threads of the options, and with one; negative: not known.
     bytes : int
-        Held by the solver; 0: not known.
+        Memory of the solver; 0: not known.
     obstacle : str
-        What keeps the accuracy from being had: "singular", "below round-off", "too many elements", "too much memory", "too long", "too long a
-        step"; "": none.
+        The reason for which the accuracy is out of reach: "singular", "below round-off", "too many elements", "too much memory", "too long", "too long a step";
+        "": none.
     time_error : float
-        Of bodies that relax: the relative error that the length of the step leaves on any grid, beside `error`; 0: none relaxes.
+        For viscoelastic bodies: the relative error by the length of the step on any grid, in addition to `error`; otherwise 0.
     work_units : float
-        Products that the solve takes, as "work_units" of a report; 0: not known. They depend little on the machine.
+        Products of the solve, as "work_units" of a report; 0: not known. They depend little on the machine.
     """
 
     target: float
@@ -62,7 +62,7 @@ class Price(NamedTuple):
 
     @classmethod
     def of(cls, row: PriceStruct) -> Price:
-        """The row of the library."""
+        """The row of a struct of the library."""
         return cls(
             row.target, (row.my, row.mx), row.tolerance, row.error, row.seconds, row.seconds_one_thread, row.bytes,
             name_of(OBSTACLES, row.obstacle), row.time_error, row.work_units,
@@ -75,11 +75,11 @@ class Prices(list[Price]):
     Attributes
     ----------
     quantity : str
-        Of what the errors are.
+        The quantity of the errors.
     estimated : str
-        What the quantity "force" is: "force", or "approach" where the force is prescribed.
+        The meaning of the quantity "force": "force", or "approach" if the force is prescribed.
     message : str
-        Why, if a limit ended the call or no grid was solved; else "".
+        The reason, if a limit ended the call or no grid was solved; otherwise "".
     """
 
     def __init__(self, rows: Iterable[Price], quantity: str, estimated: str = "force", message: str = "") -> None:
@@ -91,14 +91,14 @@ class Prices(list[Price]):
         return "\n".join([head, *(_line(price) for price in self), *([self.message] if self.message else [])])
 
     def plot(self, axes: Axes | None = None, measured: Sequence[tuple[float, float]] = ()) -> Axes:
-        """Draws error against seconds, with the elements of each grid, and `measured` points (seconds, error) beside; `axes` as for `Result.plot`."""
+        """Draws errors over seconds, with the elements of each grid, and `measured` points (seconds, error); `axes` as for `Result.plot`."""
         from ._plot_accuracy import plot_prices
 
         return plot_prices(self, axes, measured)
 
 
 def _line(price: Price) -> str:
-    """One row of the table; what is not known is a dash."""
+    """One row of the table; unknown values are a dash."""
     my, mx = price.shape
     elements = f"{mx} x {my}" if mx else "-"
     seconds = f"{price.seconds:.2g}" if price.seconds >= 0.0 else "-"
@@ -136,22 +136,22 @@ def cost_of_accuracy(
     units: tuple[str, str] | None = None,
     **given: Unpack[AccuracyOptions],
 ) -> Prices:
-    """Predicts what relative errors cost: grid, tolerance, seconds and bytes, from solves on small grids only.
+    """Predicts the costs of relative errors: grid, tolerance, seconds and bytes, from solves on small grids only.
 
     Parameters
     ----------
     h, dx, dy, shape, corner, approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, units, **given
         As for `solve_to_accuracy`, with its effects; prices have no units.
     visco : mapping, optional
-        Bodies that relax, as for `solve`: a step from rest. Each price then has the `time_error` of the step.
+        Viscoelastic bodies, as for `solve`: a step from rest. Each price then has the `time_error` of the step.
     targets : sequence of float
         Relative errors; one row each.
     quantity : str
-        Of what: "force" (of the approach, if the force is prescribed), or another one of `contact_normal.quantities`.
+        The quantity of the errors: "force" (the approach, if the force is prescribed), or another one of `contact_normal.quantities`.
     max_seconds, max_bytes : number
-        Limits: a row beyond one says so in its `obstacle`, and what it would take; 0: no limit.
+        Limits: a row beyond one has it as its `obstacle`, and still the costs; 0: no limit.
     max_elements : int
-        Likewise; 0: 4096 x 4096.
+        Limit of the elements of a grid; 0: 4096 x 4096.
 
     Returns
     -------

@@ -41,14 +41,14 @@ def pull_off(
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[SolveOptions],
 ) -> Result:
-    """The state of the least force: pulled by more, the bodies part.
+    """Finds the state of the least force: with a stronger pull the bodies part.
 
     Parameters
     ----------
     h, dx, dy, adhesion, shear_modulus, poisson_ratio, young_modulus, e_star, influence, layer, period, patches, coating, units, progress, **given
         As for `solve`.
     approach, force, mean_pressure : float, optional
-        Where to begin; by default at a force of 0.
+        The load at which the search begins; by default a force of 0.
 
     Returns
     -------

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from ._scene import Scene
 
-# So many coarser grids the library takes.
+# The largest number of coarser grids in the library.
 _MOST_COARSER = 12
 QUANTITY_NAMES = names_of("QUANTITY_")
 # The numbers of the library, by name.
@@ -30,7 +30,7 @@ LACKS = ("", "no friction", "prescribed", "not with an effect of the scene", "no
 
 
 def numbers(name: str, wanted: Sequence[str]) -> Any:
-    """The numbers of some quantities, as a C array."""
+    """The numbers of the named quantities, as a C array."""
     if isinstance(wanted, str):
         raise TypeError(f"{name} is {wanted!r}; it must be a sequence of names")
     for each in wanted:
@@ -40,7 +40,7 @@ def numbers(name: str, wanted: Sequence[str]) -> Any:
 
 
 def estimated(scene: Scene) -> str:
-    """What the quantity "force" of a scene is."""
+    """The meaning of the quantity "force" of a scene."""
     return "force" if scene.struct.load == PRESCRIBED_APPROACH else "approach"
 
 
@@ -54,14 +54,14 @@ class Quantity(NamedTuple):
     shape : (my, mx)
         The grid.
     value : float
-        nan: there is none, and `lack` says why.
+        The value; nan: there is none, and `lack` says why.
     error : float
         Estimated error, in the unit of the value; negative: not known, and `lack` says why.
     seconds, work_units : float
-        Of set-up and solve on this grid; products on it.
+        Seconds of set-up and solve on this grid; products on it.
     lack : str
-        "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular" (it grows from grid to grid), "one grid",
-        "unsolved", "not falling yet" (one more grid tells whether it converges); "": nothing is missing.
+        "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular" (it grows from grid to grid), "one grid", "unsolved", "not
+        falling yet" (one more grid shows whether it converges); "": nothing is missing.
     """
 
     name: str
@@ -74,7 +74,7 @@ class Quantity(NamedTuple):
 
     @classmethod
     def of(cls, row: QuantityRow) -> Quantity:
-        """The row of the library."""
+        """The row of a struct of the library."""
         return cls(
             name_of(QUANTITY_NAMES, row.quantity), (row.my, row.mx), row.value, row.error, row.seconds, row.work_units, name_of(LACKS, row.lack),
         )
@@ -86,7 +86,7 @@ class Quantities(list[Quantity]):
     Attributes
     ----------
     estimated : str
-        What the quantity "force" is: "force", or "approach" where the force is prescribed.
+        The meaning of the quantity "force": "force", or "approach" if the force is prescribed.
     """
 
     estimated: str = "force"
@@ -110,7 +110,7 @@ class Quantities(list[Quantity]):
         return "\n".join(lines)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws the relative error of each quantity against the seconds of each grid; `axes` as for `Result.plot`."""
+        """Draws the relative error of each quantity over the seconds of each grid; `axes` as for `Result.plot`."""
         from ._plot_accuracy import plot_quantities
 
         return plot_quantities(self, axes)
@@ -130,13 +130,13 @@ def quantities(
     Parameters
     ----------
     h, dx, dy, **given
-        As for `solve`, with its effects and options; without own coefficients.
+        As for `solve`, with effects and options, but without own coefficients.
     names : sequence of str
         "force" (of the approach, if the force is prescribed), "max_pressure", "contact_area", "mean_gap", "stiffness", "tangential_force",
         "creepage", "spin_moment", "stick_area", "max_von_mises", "von_mises_depth", "max_shear".
     coarser : int
-        Grids below that of the scene, each with half the elements of the next in both directions: 0 to 12. Errors of all but the first three
-        quantities follow from these.
+        Number of coarser grids, each with half the elements of the next in both directions: 0 to 12. They give the errors of all but the first three
+        quantities.
 
     Returns
     -------

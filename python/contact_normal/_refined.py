@@ -1,4 +1,4 @@
-"""What searches over grids are given: a surface that has a value on each of them, and limits."""
+"""Arguments of searches over grids: a surface with values on each of them, and limits."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ._scene import Scene
 def on_any_grid(
     h: Any, dx: Any, dy: Any, shape: Any, corner: Any, effects: Mapping[str, Any], **loaded: Any
 ) -> tuple[Scene, Surface | None, tuple[float, float]]:
-    """The scene on the first grid by its loads, elastic constants and effects, the callback of a callable surface, and the middle of its rectangle."""
+    """The scene on the first grid, with its loads, elastic constants and effects, the callback of a callable surface, and the middle of the rectangle."""
     if not callable(h):
         for name, value in (("shape", shape), ("corner", corner)):
             if value is not None:
@@ -40,7 +40,7 @@ def limits(max_seconds: Any, max_bytes: Any, max_elements: Any, surface: Surface
     accuracy = initialised("accuracy")
     accuracy.max_seconds = number("max_seconds", max_seconds)
     for name, value in (("max_bytes", max_bytes), ("max_elements", max_elements)):
-        # 2e9 is a whole number, too.
+        # A float such as 2e9 is allowed if it is a whole number.
         setattr(accuracy, name, integer(name, int(value) if isinstance(value, float) and value.is_integer() else value, 64))
     if surface:
         accuracy.surface = surface.callback

@@ -1,4 +1,4 @@
-"""What a solve found."""
+"""The result of a solve."""
 
 from __future__ import annotations
 
@@ -21,28 +21,28 @@ if TYPE_CHECKING:
 
     from ._scene import Scene
 
-# Linear elasticity is for small strains. A ball has this part of E* as its largest pressure where the contact is as wide as 0.6 of its radius.
+# Linear elasticity is for small strains. The largest pressure of a ball is this part of E* if the contact is as wide as 0.6 of its radius.
 _STRAINED = 0.2
 
-# E* of solids in pascal, from gels to diamond on a rigid body.
+# E* of solids in pascal, from gels to a rigid body on diamond.
 _SOLIDS = 1e3, 2e12
 
-# A line contact of so few elements across has a largest pressure that is wrong by up to 3/4; that of three, by up to 1/5.
+# The largest pressure of a line contact with so few elements across has an error of up to 3/4; with three, of up to 1/5.
 _FEW = 2
 
 _ROW = [name for name in names(LedgerRow) if name not in ("struct_size", "reserved")]
 
 
 class Result(Solved):
-    """What a solve found.
+    """The result of a solve.
 
     Attributes
     ----------
     status : int
-        0 (OK): the contact conditions hold to the tolerance. > 0: stopped early, the arrays hold the best iterate. < 0 (batches
-        only): refused, the arrays mean nothing.
+        0 (OK): the contact conditions hold to the tolerance. > 0: stopped early, the arrays hold the best iterate. < 0 (batches only): refused, the arrays have
+        no meaning.
     message : str
-        Why, if the status is not OK, and what else you should know.
+        The reason, if the status is not OK, and further remarks.
     pressure : ndarray of float, (my, mx)
         The pressures p.
     deformed_distance : ndarray of float, (my, mx)
@@ -54,19 +54,19 @@ class Result(Solved):
     at_limit : ndarray of bool, (my, mx)
         The elements at the pressure limit.
     traction : ndarray of float, (2, my, mx)
-        With friction: q on body 1, in x and y; else zeros.
+        With friction: tractions q on body 1, in x and y; otherwise zeros.
     slip : ndarray of float, (2, my, mx)
-        With friction: the slip of body 1 over body 2 in the step, in x and y; else zeros.
+        With friction: the slip of body 1 over body 2 in the step, in x and y; otherwise zeros.
     stick_slip : ndarray of int, (my, mx)
-        With friction: 0 exterior, 1 stick, 2 slip, 3 slip in a layer that yields.
+        With friction: 0 exterior, 1 stick, 2 slip, 3 slip in a plastic layer.
     friction_coefficient, yield_limit : ndarray of float, (my, mx)
-        With a law of friction or a layer that yields: what particles of the interface carry after the step; else zeros.
+        With a law of friction or a plastic layer: the state of the particles of the interface after the step; otherwise zeros.
     contact_pressure, attraction : ndarray of float, (my, mx)
         With adhesion: q >= 0 and sigma >= 0, whose difference is p; without adhesion p and zeros.
     x : ndarray of float, (mx,)
-        Centres of the elements, from the middle of the grid.
+        x of the centres of the elements, relative to the middle of the grid.
     y : ndarray of float, (my,)
-        Likewise.
+        y of the centres of the elements, relative to the middle of the grid.
     dx, dy : float
         Element sizes.
     approach : float
@@ -80,18 +80,17 @@ class Result(Solved):
     contact_area : float
         The area of the elements in contact.
     mean_gap : float
-        The mean of the deformed distance, over the elements that have a surface.
+        The mean of the deformed distance, over the elements with a surface.
     warnings : tuple of str
-        What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "RANGE", "ATTRACTION", "LAW", "STRAIN", where the
-        largest pressure is more than a fifth of E*, "MODULUS", where units are named in which E* is that of no solid, and "NARROW", where all of the
-        contact is within two columns or rows of more.
+        Names of the warnings, also if the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "RANGE", "ATTRACTION", "LAW"; "STRAIN", if the
+        largest pressure is more than a fifth of E*; "MODULUS", if E* in the named units is that of no solid; and "NARROW", if the whole contact is within two
+        of several columns or rows.
     tangential_force : (float, float)
-        With friction: on body 1, in x and y; else zeros.
+        With friction: the tangential force on body 1, in x and y; otherwise zeros.
     units : (str, str) or None
-        Names of the units of lengths and forces, which pictures and files then have. May be set.
+        Names of the units of lengths and forces, for pictures and files. May be set.
     report : dict
-        The numbers of `contact_normal_report`, of all its groups: "cycles", "residual", "error_force", ... The page of the Python reference has
-        all keys.
+        The values of all groups of `contact_normal_report`: "cycles", "residual", "error_force", ... The page of the Python reference has all keys.
     ledger : Ledger
         One dict per grid.
     """
@@ -123,13 +122,13 @@ class Result(Solved):
         self.message = "\n".join(text for text in (self.message, told) if text)
 
     def _narrow(self) -> str:
-        """The directions in which all of the contact is within a few elements, although there are surfaces beside it."""
+        """The directions in which the whole contact is within a few elements, although other elements have surfaces."""
         touches = self._contact != 0
         found = [(name, axis) for name, axis in (("x", 0), ("y", 1)) if 0 < np.count_nonzero(touches.any(axis)) <= _FEW < touches.shape[1 - axis]]
         return " and ".join(name for name, axis in found if np.count_nonzero(np.isfinite(self.deformed_distance).any(axis)) > _FEW)
 
     def _ends_in_contact(self) -> str:
-        """The directions in which contact is at an end of the grid that is no period."""
+        """The directions in which contact reaches an end of the grid, without a period."""
         period = self._scene.period
         ends = {"x": self._contact[:, [0, -1]], "y": self._contact[[0, -1]]}
         return " and ".join(name for name, elements in ends.items() if name not in period and elements.any())
@@ -139,7 +138,7 @@ class Result(Solved):
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """What to look at, even where the status is OK."""
+        """Names of the warnings, also if the status is OK."""
         return (*super().warnings, *("STRAIN",) * self._is_strained, *("MODULUS",) * self._is_no_solid, *("NARROW",) * self._is_narrow)
 
     @cached_property
@@ -156,12 +155,12 @@ class Result(Solved):
 
     @property
     def neglected(self) -> tuple[str, ...]:
-        """The effects that `neglect_below` left out; `neglected_error` says how wrong that may be."""
+        """The effects that `neglect_below` left out; `neglected_error` has the error by this."""
         return omissions(int(self.report["neglected"]))
 
     @property
     def neglected_error(self) -> float:
-        """The largest relative change of a quantity by leaving out `neglected`, its error included; 0 where nothing is left out."""
+        """The largest relative change of a quantity by leaving out `neglected`, with its error; 0 if nothing is left out."""
         return float(self.report["neglected_error"])
 
     @property
@@ -171,7 +170,7 @@ class Result(Solved):
 
     @property
     def mean_gap(self) -> float:
-        """The mean of the deformed distance, over the elements that have a surface; nan without any."""
+        """The mean of the deformed distance over the elements with a surface; nan without any."""
         known = self.deformed_distance[np.isfinite(self.deformed_distance)]
         return float(known.mean()) if known.size else float("nan")
 
@@ -180,17 +179,17 @@ class Result(Solved):
         return [force, with_unit(f"approach {self.approach:.6g}", "length", self.units), *others, f"residual {self.report['residual']:.1e}"]
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws the pressures and the outline of the contact area, seen from above.
+        """Draws the pressures and the outline of the contact area, in a view from above.
 
         Parameters
         ----------
         axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
+            The axes to draw on; by default those of a new figure.
 
         Returns
         -------
         matplotlib.axes.Axes
-            The axes, to add to or to save: `axes.figure.savefig("pressure.png")`.
+            The axes, for additions or for saving: `axes.figure.savefig("pressure.png")`.
         """
         from ._plot_above import plot_pressure
 
@@ -207,24 +206,24 @@ class Result(Solved):
 
 
 class TangentialResult(Solved):
-    """What `solve_tangential` found: the tractions of pressures that were given. It has the methods of `Result` except `plot` and `plot_section`.
+    """The result of `solve_tangential`: the tractions for given pressures. It has the methods of `Result` except `plot` and `plot_section`.
 
     Attributes
     ----------
     status : int
         0 (OK): the conditions of friction hold to the tolerance. > 0: stopped early.
     message : str
-        Why, if the status is not OK, and what else you should know.
+        The reason, if the status is not OK, and further remarks.
     pressure : ndarray of float, (my, mx)
-        Those that were given, 0 where they are not positive.
+        The given pressures, with 0 in the place of those that are not positive.
     contact : ndarray of bool, (my, mx)
-        Where the pressure is positive.
+        The elements with a positive pressure.
     traction, slip, stick_slip, x, y, dx, dy, units
         As those of `Result`.
     force, mean_pressure, max_pressure, contact_area : float
-        Of the pressures.
+        Values of the given pressures.
     tangential_force : (float, float)
-        On body 1, in x and y.
+        The tangential force on body 1, in x and y.
     report : dict
-        The numbers of `contact_normal_report`; those that do not speak of friction mean nothing.
+        The values of `contact_normal_report`; those of the normal problem have no meaning.
     """

@@ -78,21 +78,21 @@ class Scene:
 
     @cached_property
     def without_load(self) -> Scene:
-        """What stresses below the surface need: nothing that the caller may have changed since."""
+        """A scene with the data that stresses below the surface need, independent of later changes by the caller."""
         return _without_load(self.shape, self.struct.dx, self.struct.dy, self._constants, self._of_stresses, self._own)
 
     def on_grid(self, shape: tuple[int, int], dx: float, dy: float) -> Scene:
-        """What stresses below the surface need, on another grid: without load."""
+        """The data that stresses below the surface need, on another grid, without a load."""
         effects = self._of_stresses
         if effects["patches"] is not None:
             patch, factors = both("patches", effects["patches"])
-            # Elements of another grid are of the patch in which they begin.
+            # Elements of another grid belong to the patch in which they begin.
             rows, columns = (np.arange(m) * n // m for m, n in zip(shape, self.shape))
             effects["patches"] = np.asarray(patch)[rows[:, None], columns], factors
         return _without_load(shape, dx, dy, self._constants, effects, self._own)
 
     def know_own(self, names: list[str]) -> None:
-        """Remembers which own coefficients a handle keeps: the scene leaves them out."""
+        """Notes the own coefficients that a handle keeps, and that the scene leaves out."""
         self._own = names
 
     def needs_half_space(self) -> None:
@@ -102,24 +102,24 @@ class Scene:
 
     @property
     def remark(self) -> str:
-        """What the caller should know of what is given, a line each."""
+        """Remarks for the caller on the arguments, one line each."""
         return self.remarks.of_one() if self.remarks else ""
 
     @property
     def has_particles(self) -> bool:
-        """Whether particles of the interface carry something: with a law of friction or a layer that yields."""
+        """Whether particles of the interface have a state: with a law of friction or a plastic layer."""
         effect = self.struct.friction
         return bool(effect) and (effect.contents.law != 0 or effect.contents.yield_limit != 0.0)
 
     @property
     def period(self) -> str:
-        """Directions in which the grid is one period of a scene that repeats itself."""
+        """Directions in which the grid is one period of a periodic scene."""
         said = self._effects.get("period")
         return said if isinstance(said, str) else ""
 
     @property
     def has_half_space(self) -> bool:
-        """Whether bodies give way as half-spaces of their elastic constants do."""
+        """Whether the bodies deform as half-spaces with their elastic constants."""
         return not self._own and not any(self.struct.coating)
 
     @property
@@ -130,13 +130,13 @@ class Scene:
 
     @property
     def effort(self) -> int:
-        """Elements, counted as often as a product with the matrix goes over them."""
+        """The number of elements times the number of passes of one product."""
         factors = [effect.contents.rows if name == "row_tables" else effect.contents.count
                    for name in ("row_tables", "patches") if (effect := getattr(self.struct, name))]
         return int(self.h.size * max([1, *factors]))
 
     def pressures_of(self, contact: Integers) -> Doubles:
-        """Pressures for a contact area that is guessed: the same everywhere in it, and about as large as the load needs."""
+        """Pressures for a guessed contact area: uniform in it, and of the size that the load needs."""
         inside = contact != 0
         area = inside.sum() * self.struct.dx * self.struct.dy
         if not area:
@@ -144,7 +144,7 @@ class Scene:
         if self.struct.load == PRESCRIBED_FORCE:
             pressure = self.struct.force / area
         else:
-            # On a circle of this area: a pressure p pushes its own area in by 16/(3 pi) p a/E* in the mean.
+            # As for a circle with this area: the mean displacement by a pressure p is 16/(3 pi) p a/E*.
             depth = np.maximum(self.struct.approach - np.where(inside, self.h, np.inf), 0.0)[inside].mean()
             compliance = sum((1.0 - nu) / (2.0 * g) for g, nu in zip(self.struct.shear_modulus, self.struct.poisson_ratio))
             pressure = depth * 3.0 * np.pi / 16.0 / np.sqrt(area / np.pi) / compliance if compliance > 0.0 else 0.0
@@ -205,7 +205,7 @@ def _without_load(
 
 
 def coating_of(value: Any, name: str = "coating") -> Any:
-    """A `contact_normal_coating` of `(thickness, shear_modulus, poisson_ratio)`."""
+    """A `contact_normal_coating` from `(thickness, shear_modulus, poisson_ratio)`."""
     if not isinstance(value, (tuple, list)) or len(value) != 3:
         count = f"has {len(value)} parts" if isinstance(value, (tuple, list)) else f"is {value!r}"
         raise ValueError(f"{name} {count}; it must be (thickness, shear_modulus, poisson_ratio)")
@@ -216,7 +216,7 @@ def coating_of(value: Any, name: str = "coating") -> Any:
 
 
 def _scaled(values: Any) -> tuple[Any, float]:
-    """Coefficients and their scale, of `coefficients` or `(coefficients, scale)`."""
+    """Coefficients and their scale, from `coefficients` or `(coefficients, scale)`."""
     if isinstance(values, tuple):
         coefficients, scale = both("influence", values, "coefficients and their scale")
         return coefficients, number("the scale of the coefficients", scale)
@@ -224,7 +224,7 @@ def _scaled(values: Any) -> tuple[Any, float]:
 
 
 def influence(value: Any) -> tuple[Any, Doubles]:
-    """A `contact_normal_influence` and the table that it points to."""
+    """A `contact_normal_influence`, and the table that it points to."""
     table, scale = _scaled(value)
     table = doubles("influence", table, dimensions="(2 cy, 2 cx)")
     if table.shape[0] % 2 or table.shape[1] % 2:
@@ -236,7 +236,7 @@ def influence(value: Any) -> tuple[Any, Doubles]:
 
 
 def _per_element(name: str, value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
-    """An effect of one number, or of one per element."""
+    """An effect with one number, or with one per element."""
     one, array = {"layer": ("compliance", "compliances"), "pressure_limit": ("limit", "limits")}[name]
     effect = initialised(name)
     if np.ndim(value) == 0:

@@ -1,4 +1,4 @@
-"""One scene solved: on a given grid, or on grids fine enough for an accuracy."""
+"""Solves one scene: on a given grid, or on grids fine enough for an accuracy."""
 
 from __future__ import annotations
 
@@ -60,58 +60,55 @@ def solve(
     dx, dy : float
         Element sizes in x (along rows) and y.
     approach, force, mean_pressure : float
-        Exactly one of them: the approach of the bodies, or the normal force, or that over the area of the grid.
+        Exactly one of them: the approach of the bodies, the normal force, or the normal force over the area of the grid.
     shear_modulus, young_modulus : float or pair of floats
-        One of them, of both bodies, or of each; inf: a rigid body.
+        One of them, for both bodies or for each; inf: a rigid body.
     poisson_ratio : float or pair of floats
-        Of both bodies, or of each.
+        For both bodies or for each.
     e_star : float
-        In the place of either modulus: E* with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2. The Poisson ratio may then be left out where there
-        is no friction and no coating. Bodies give way alike.
+        Instead of either modulus: E* with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2. The Poisson ratio may then be left out without friction and coatings. Both
+        bodies are equally compliant.
     influence : array_like, (2 cy, 2 cx), or (array_like, scale), optional
         Own influence coefficients instead of the half-space, times a scale.
     layer : float or array_like, (my, mx), optional
         Compliance of a thin layer, a length per pressure.
     pressure_limit : float or array_like, (my, mx), optional
-        No pressure is larger.
+        Largest pressure.
     period : {"x", "y", "xy"}, optional
-        The grid is one period of a scene that repeats itself.
+        The grid is one period of a periodic scene.
     patches : (array_like of int (my, mx), array_like (count, count)), optional
         The patch of each element, from 0 on, and the factors of their interaction.
     row_tables : array_like, (my, my, 2 cx), or (array_like, scale), optional
         Own coefficients of each loaded row, row and offset in x.
     coating : (of body 1, of body 2), optional
-        Of each None or `(thickness, shear_modulus, poisson_ratio)`: an elastic layer bonded to the body. The elastic constants above
-        are then those of the body below, which may be rigid (inf).
+        For each body None or `(thickness, shear_modulus, poisson_ratio)`: an elastic layer bonded to the body. The elastic constants above are then those of
+        the substrate, which may be rigid (inf).
     friction : mapping, optional
-        Friction between the bodies: "coefficient" (one, or (my, mx)); "motion", "SHIFT" (default), "TRANSIENT_ROLLING" or
-        "STEADY_ROLLING"; "creepage", a pair; "force", a pair of tangential forces, None where the creepage is given; "spin",
-        "spin_centre", "rolling_distance", "rolling_direction", "spin_offset"; "previous_traction", "rigid_slip", "initial_traction" and "creepage_weight", pairs of
-        (my, mx); "compliance" of a thin elastic layer between the bodies (one, or (my, mx));
-        "law": how the coefficient falls with the slip velocity, a mapping of "kind" ("LINEAR", "RATIONAL", "EXPONENTIAL"), "kinetic",
-        "falling", "half_speed" (one or a pair), "speed" of rolling or "time_step" of a shift, "memory_distance", "memory_speed"; "layer": a
-        layer that yields, a mapping of "yield_limit" and "hardening"; "previous_coefficient", "previous_yield_limit" (my, mx): what
-        particles had before, "branch": "NEAR", "LOW" or "HIGH" (docs/laws.md); "continues": from the tractions that a `Solver` found last; "sensitivities": True for derivatives of both forces and the moment
-        by both creepages and the spin, nine numbers row by row in `report["sensitivities"]`; "influence": own tangential
-        coefficients (xx, yy, xy) or (xx, yy, xy, scale), each (2 cy, 2 cx); "influence_cross": with these, of unlike bodies, (xz, yz);
-        "row_tables": own tangential coefficients that differ per loaded row, (xx, yy, xy) or (xx, yy, xy, scale), each (my, my, 2 cx).
-        docs/friction.md has the signs.
+        Friction between the bodies: "coefficient" (one, or (my, mx)); "motion", "SHIFT" (default), "TRANSIENT_ROLLING" or "STEADY_ROLLING"; "creepage", a pair;
+        "force", a pair of tangential forces, None if the creepage is given; "spin", "spin_centre", "rolling_distance", "rolling_direction", "spin_offset";
+        "previous_traction", "rigid_slip", "initial_traction" and "creepage_weight", pairs of (my, mx); "compliance" of a thin elastic layer between the bodies
+        (one, or (my, mx)); "law": the fall of the coefficient with the slip velocity, a mapping of "kind" ("LINEAR", "RATIONAL", "EXPONENTIAL"), "kinetic",
+        "falling", "half_speed" (one or a pair), "speed" of rolling or "time_step" of a shift, "memory_distance", "memory_speed"; "layer": a plastic layer, a
+        mapping of "yield_limit" and "hardening"; "previous_coefficient", "previous_yield_limit" (my, mx): the state of the particles before the step; "branch":
+        "NEAR", "LOW" or "HIGH" (docs/laws.md); "continues": from the last tractions of a `Solver`; "sensitivities": True for derivatives of both forces and the
+        moment by both creepages and the spin, nine numbers row by row in `report["sensitivities"]`; "influence": own tangential coefficients (xx, yy, xy) or
+        (xx, yy, xy, scale), each (2 cy, 2 cx); "influence_cross": with these, for unlike bodies, (xz, yz); "row_tables": own tangential coefficients that
+        differ per loaded row, (xx, yy, xy) or (xx, yy, xy, scale), each (my, my, 2 cx). docs/friction.md has the signs.
     adhesion : mapping, optional
-        Attraction across the gap: "work" of adhesion, an energy per area (one, or (my, mx)); "law", "EXPONENTIAL" (default), "DUGDALE",
-        "CUBIC" or "VAN_DER_WAALS"; "range", a length, by default the shortest that the elements carry; "smear", of DUGDALE; "start",
-        "AUTO" (default), "FROM_CONTACT" or "FROM_APART": which of several states; "stiffness": True for dF/dapproach; "stability": True for
-        how near the state is to a snap; "shear_strength", a traction that adds to the bound of friction in contact. `force` may then be negative.
-        docs/adhesion.md says which law and which range.
+        Attraction across the gap: "work" of adhesion, an energy per area (one, or (my, mx)); "law", "EXPONENTIAL" (default), "DUGDALE", "CUBIC" or
+        "VAN_DER_WAALS"; "range", a length, by default the shortest that the elements resolve; "smear", of DUGDALE; "start", "AUTO" (default), "FROM_CONTACT" or
+        "FROM_APART": which of several states; "stiffness": True for dF/dapproach; "stability": True for the distance of the state from a snap;
+        "shear_strength", a traction that adds to the bound of friction in contact. `force` may then be negative. docs/adhesion.md says how to choose the law
+        and the range.
     visco : mapping, optional
-        Bodies that relax: "modulus" and "time", pairs (of body 1, of body 2) of the moduli and the relaxation times of their branches, None
-        where a body is elastic; `shear_modulus` is that at once. "time_step" of the step, 0 (default) for a jump; "form", "AUTO" (default),
-        "RELAXATION", "CREEP" or "BACKWARD_EULER"; "continues": from the step that a `Solver` made last. `report` has the "time", the
-        "step_error", the "time_error" and the "compliance". docs/visco.md has the equations.
+        Viscoelastic bodies: "modulus" and "time", pairs (body 1, body 2) of the moduli and the relaxation times of their branches, None for an elastic body;
+        `shear_modulus` is the instantaneous one. "time_step" of the step, 0 (default) for a jump; "form", "AUTO" (default), "RELAXATION", "CREEP" or
+        "BACKWARD_EULER"; "continues": from the last step of a `Solver`. `report` has the "time", the "step_error", the "time_error" and the "compliance".
+        docs/visco.md has the equations.
     pressure, contact : array_like, (my, mx), optional
-        Initial guess: the pressures, or the contact area (booleans or integers) that there may be; with `active_set="FIXED"` `contact` is
-        the contact area.
+        Initial guess: the pressures, or the largest possible contact area (booleans or integers); with `active_set="FIXED"` `contact` is the contact area.
     units : (str, str), optional
-        Names of the units of lengths and forces, as ("mm", "N"), for pictures and files. They change no number.
+        Names of the units of lengths and forces, as ("mm", "N"), for pictures and files. They change no value.
     progress : callable or bool, optional
         Called with a `Progress` after each cycle, a true result cancels; True: draws a bar on stderr.
     **given : SolveOptions
@@ -120,7 +117,7 @@ def solve(
     Returns
     -------
     Result
-        Its `status` is `OK` if the contact conditions hold to the tolerance, else > 0: stopped early, and `message` says why.
+        Its `status` is `OK` if the contact conditions hold to the tolerance. Otherwise it is > 0: stopped early, and `message` says why.
 
     Raises
     ------
@@ -142,7 +139,7 @@ def solve(
     """
     effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
                "row_tables": row_tables, "coating": coating, "friction": friction, "adhesion": adhesion, "visco": visco}
-    # Options first: a load whose name is written wrong is an unknown option, and not a load that lacks.
+    # Options first, so that a misspelt load is refused as an unknown option, not as a missing load.
     struct, units = options(given), checked(units)
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, mean_pressure=mean_pressure, young_modulus=young_modulus,
                   e_star=e_star)
@@ -156,7 +153,7 @@ def solve(
 
 
 class AccurateResult(Result):
-    """What `solve_to_accuracy` found, on the grid that it took.
+    """The result of `solve_to_accuracy`, on its last grid.
 
     Attributes
     ----------
@@ -170,7 +167,7 @@ class AccurateResult(Result):
     seconds: float
 
     def _take(self, accuracy: Any, middle: tuple[float, float]) -> None:
-        """The grid that was taken, and what it reached."""
+        """Takes over the last grid, and its accuracy."""
         self.dx, self.dy, self.seconds, self._centre = accuracy.dx, accuracy.dy, accuracy.seconds, middle
         self._scene = self._scene.on_grid(self.pressure.shape, self.dx, self.dy)
         self.reached = accuracy.reached if accuracy.reached >= 0 else None
@@ -215,40 +212,40 @@ def solve_to_accuracy(
 ) -> AccurateResult:
     """Solves on finer and finer grids until the estimated relative error of the force is at most `target`.
 
-    Where the force is prescribed, it is the error of the approach. `to_accuracy` is a short name for this function.
+    If the force is prescribed, it is the error of the approach. `to_accuracy` is a short name for this function.
 
     Parameters
     ----------
     h : array_like, (my, mx), or callable
-        Undeformed distance on the first grid, which is refined by cubics; or h(x, y) of the coordinates of element centres, arrays of
-        the shapes (1, mx) and (my, 1).
+        Undeformed distance on the first grid, which is refined by cubics; or h(x, y) of the coordinates of element centres, as arrays of the shapes (1, mx) and
+        (my, 1).
     dx, dy : float
         Element sizes of the first grid.
     target : float
         Relative error of the force (of the approach, if the force is prescribed).
     max_pressure_target, contact_area_target : float
-        Relative errors of the largest pressure and of the corrected contact area; 0: not asked for.
+        Wanted relative errors of the largest pressure and of the corrected contact area; 0: none.
     targets : mapping, optional
-        Relative errors of further quantities by name, as {"max_von_mises": 1e-2}; see `contact_normal.quantities` for the names. Up to two
-        coarser grids are then solved first.
+        Wanted relative errors of further quantities by name, as {"max_von_mises": 1e-2}; see `contact_normal.quantities` for the names. Up to two coarser grids
+        are then solved first.
     max_seconds, max_bytes : number
-        What it may cost; 0: no limit.
+        Limits of the costs; 0: no limit.
     max_elements : int
-        Elements of a grid at most; 0: 4096 x 4096.
+        Limit of the elements of a grid; 0: 4096 x 4096.
     shape : (my, mx), optional
-        Elements of the first grid, needed where `h` is a callable.
+        Elements of the first grid, needed if `h` is a callable.
     corner : (x, y), optional
-        Of the rectangle, for a callable `h`; by default the rectangle is centred on (0, 0).
+        Corner of the rectangle, for a callable `h`; by default the rectangle is centred on (0, 0).
     approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, units, progress, **given
         As for `solve`.
     layer, pressure_limit, period, patches, coating, friction, adhesion, visco
-        As for `solve`. Arrays are those of the first grid; other grids have their means. `adhesion` needs a "range", and `visco` is a step from rest.
+        As for `solve`. Arrays are those of the first grid, and their means are used on other grids. `adhesion` needs a "range", and `visco` is a step from
+        rest.
 
     Returns
     -------
     AccurateResult
-        With the arrays of the grid that was taken. Its `status` is `OK` where the target is met by the estimate; else `message` says
-        the best that was reached.
+        With the arrays of the last grid. Its `status` is `OK` if the estimate meets the target; otherwise `message` has the best accuracy.
 
     Raises
     ------

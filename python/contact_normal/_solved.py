@@ -1,4 +1,4 @@
-"""What solves of normal and of tangential problems have found, alike."""
+"""Results that solves of normal and of tangential problems share."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 # The groups of a report.
 _GROUPS = ("normal", "tangential", "accuracy", "statistics", "adhesion", "visco")
 _WARNINGS = names_of("WARNING_")
-# Members of the tangential group that have the name of one of the normal problem.
+# Members of the tangential group with the name of one of the normal problem.
 _ALSO_NORMAL = ("force", "moment", "residual", "gap", "update")
 
 
@@ -37,7 +37,7 @@ def report_key(group: str, name: str) -> str:
 
 
 def reported(report: Any) -> dict[str, Any]:
-    """The numbers of all groups of a report, tuples of those of its arrays: "force" is normal.force, "tangential_force" is tangential.force."""
+    """The values of all groups of a report, with arrays as tuples: "force" is normal.force, "tangential_force" is tangential.force."""
     found: dict[str, Any] = {"ledger_rows": report.ledger_rows, "warnings": report.warnings}
     for group in _GROUPS:
         members = getattr(report, group)
@@ -49,7 +49,7 @@ def reported(report: Any) -> dict[str, Any]:
 
 
 class Solved(WithUnits):
-    """What a solve found, with or without the normal problem. `Result` and `TangentialResult` have the attributes."""
+    """The result of a solve, with or without the normal problem. `Result` and `TangentialResult` have the attributes."""
 
     def __init__(self, status: int, message: str, outputs: Outputs, report: Any, scene: Scene, units: Any = None) -> None:
         self.status, self.message = status, "\n".join(text for text in (message, scene.remark) if text)
@@ -62,10 +62,10 @@ class Solved(WithUnits):
         self.units = units
 
     def __getstate__(self) -> dict[str, Any]:
-        # Pickled and copied as plain numbers: structs of the library hold addresses.
+        # Pickled and copied as plain values, because structs of the library hold addresses.
         return {name: value for name, value in {**self.__dict__, "report": self.report}.items() if name != "_report"}
 
-    # What follows is made when it is first asked for: small problems take no longer than that would.
+    # The following is computed when it is first used, because this takes as long as a small problem.
     @cached_property
     def contact(self) -> npt.NDArray[np.bool_]:
         """The contact area, with the elements at the pressure limit."""
@@ -73,7 +73,7 @@ class Solved(WithUnits):
         return of_any_kind
 
     def _field(self, name: str, *pair: int, kind: Any = float) -> npt.NDArray[Any]:
-        """The array that an effect wrote; zeros without it."""
+        """The array of an effect; zeros without the effect."""
         written = self._of_effects.get(name)
         return np.zeros((*pair, *self.pressure.shape), kind) if written is None else written
 
@@ -89,17 +89,17 @@ class Solved(WithUnits):
 
     @cached_property
     def stick_slip(self) -> npt.NDArray[np.int32]:
-        """0 exterior, 1 stick, 2 slip, 3 in a layer that yields; zeros without friction."""
+        """0 exterior, 1 stick, 2 slip, 3 slip in a plastic layer; zeros without friction."""
         return self._field("stick_slip", kind=np.int32)
 
     @cached_property
     def friction_coefficient(self) -> Doubles:
-        """With a law of friction or a layer that yields: mu that particles of the interface carry after the step; else zeros."""
+        """With a law of friction or a plastic layer: mu of the particles of the interface after the step; otherwise zeros."""
         return self._field("friction_coefficient")
 
     @cached_property
     def yield_limit(self) -> Doubles:
-        """With a layer that yields: the limits that particles carry after the step; else zeros."""
+        """With a plastic layer: the yield limits of the particles after the step; otherwise zeros."""
         return self._field("yield_limit")
 
     @cached_property
@@ -114,17 +114,17 @@ class Solved(WithUnits):
 
     @cached_property
     def report(self) -> dict[str, Any]:
-        """The numbers of `contact_normal_report`."""
+        """The values of `contact_normal_report`."""
         return reported(self._report)
 
     @property
     def x(self) -> Doubles:
-        """x of the centres of the elements, (mx,): from the middle of the grid."""
+        """x of the centres of the elements, (mx,), relative to the middle of the grid."""
         return centres(self.pressure.shape[1], self.dx, self._centre[0])
 
     @property
     def y(self) -> Doubles:
-        """y of the centres of the elements, (my,): from the middle of the grid."""
+        """y of the centres of the elements, (my,), relative to the middle of the grid."""
         return centres(self.pressure.shape[0], self.dy, self._centre[1])
 
     @property
@@ -159,7 +159,7 @@ class Solved(WithUnits):
         return x, y
 
     def _numbers(self) -> list[str]:
-        """What `repr` says."""
+        """The values in `repr`."""
         my, mx = self.pressure.shape
         share = self.contact_area / (my * mx * self.dx * self.dy) if self.pressure.size else 0.0
         told = [
@@ -186,19 +186,19 @@ class Solved(WithUnits):
         return f"<{type(self).__name__}: {status}; {mx} x {my} elements{told}{warned}{message}>"
 
     def plot_traction(self, axes: Axes | None = None) -> Axes:
-        """Draws the tractions as arrows over the stick and slip areas, seen from above; `axes` as for `Result.plot`."""
+        """Draws the tractions as arrows over the stick and slip areas, in a view from above; `axes` as for `Result.plot`."""
         from ._plot_above import plot_traction
 
         return plot_traction(self, axes)
 
     def plot_histogram(self, bins: int = 40, axes: Axes | None = None) -> Axes:
-        """Draws which share of the contact area has which pressure, in `bins` ranges of pressure; `axes` as for `Result.plot`."""
+        """Draws the share of the contact area over `bins` ranges of pressure; `axes` as for `Result.plot`."""
         from ._plot_lines import plot_histogram
 
         return plot_histogram(self, bins, axes)
 
     def _tractions_on(self, body: int, traction: Any) -> Any:
-        """Those that are given, or those of friction as they act on this body; None where there are none."""
+        """The given tractions, or those of friction with their sign on this body; None without any."""
         if traction is None and self.has_friction and self.traction.any():
             sign = 1.0 if body == 1 else -1.0
             return sign * self.traction[0], sign * self.traction[1]
@@ -214,20 +214,20 @@ class Solved(WithUnits):
         principal: bool = False,
         threads: int = 1,
     ) -> SubsurfaceStress:
-        """The stresses below the surface of one body, from these pressures.
+        """Computes the stresses below the surface of one body, from these pressures.
 
         Parameters
         ----------
         depths : array_like, (n,)
             Depths into the body, in any order.
         traction : (array_like (my, mx), array_like (my, mx)), optional
-            Tractions that act on this body, in x and in y; by default those that `friction` found, if any.
+            Tractions on this body, in x and in y; by default those of `friction`, if there are any.
         body : {1, 2}
-            Which one: its Poisson ratio matters.
+            The body, whose Poisson ratio is used.
         components : sequence of str, optional
-            Which of "xx", "yy", "zz", "xy", "xz", "yz", "von_mises", "maximum_shear" are wanted; by default all. Others are None.
+            The wanted ones of "xx", "yy", "zz", "xy", "xz", "yz", "von_mises", "maximum_shear"; by default all. Others are None.
         principal : bool
-            Whether principal stresses and their directions are wanted, too.
+            Whether principal stresses and their directions are also wanted.
         threads : int
             0: all cores.
 
@@ -261,12 +261,12 @@ class Solved(WithUnits):
         body: int = 1,
         threads: int = 1,
     ) -> Doubles:
-        """The stresses at single points of one body, from these pressures.
+        """Computes the stresses at single points of one body, from these pressures.
 
         Parameters
         ----------
         points : array_like, (n, 3)
-            x and y, from where those of the result are counted, and the depth. At depth 0 no point may be on the edge of an element.
+            x and y in the coordinates of the result, and the depth. At depth 0 no point may be on the edge of an element.
         traction, body, threads
             As for `subsurface`.
 
@@ -280,7 +280,7 @@ class Solved(WithUnits):
         return at_points(self._scene, self.pressure, points, self._tractions_on(body, traction), body, threads, self._centre)
 
     def to_xarray(self) -> Any:
-        """All fields as an `xarray.Dataset` with coordinates, names and, if `units` are told, units. Needs xarray."""
+        """All fields as an `xarray.Dataset` with coordinates, names and, if `units` are known, units. Needs xarray."""
         from ._datasets import of_result
 
         return of_result(self)

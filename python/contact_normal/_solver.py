@@ -42,9 +42,9 @@ _Problem = tuple[Scene, Outputs]
 
 
 class Solver:
-    """A handle for many solves on one grid and one pair of bodies, which sets up everything once.
+    """A handle for many solves on one grid and one pair of bodies, whose set-up is made once.
 
-    It is freed at the end of a `with`, by `close`, or when Python drops it. One thread at a time may use it.
+    It is freed at the end of a `with`, by `close`, or when it has no references. One thread at a time may use it.
 
     Parameters
     ----------
@@ -55,9 +55,9 @@ class Solver:
     shear_modulus, poisson_ratio, young_modulus, e_star, influence, layer, period, patches, row_tables, coating, units, **given
         As for `solve`: for all later solves.
     friction : mapping, optional
-        Its "influence" and "influence_cross", or its "row_tables": the tangential coefficients of later solves, whose friction need not have them again.
+        Its "influence" and "influence_cross", or its "row_tables": the tangential coefficients of later solves, whose friction may leave them out.
     visco : mapping, optional
-        Its "modulus" and "time": the branches of later solves, whose `visco` need not have them again.
+        Its "modulus" and "time": the branches of later solves, whose `visco` may leave them out.
 
     Examples
     --------
@@ -102,8 +102,7 @@ class Solver:
         self._given = given
         self._visco = owned(visco)
         self._own = [name for name, table in (("influence", influence), ("row_tables", row_tables)) if table is not None]
-        # The set-up reads neither the undeformed distance nor the load, but checks them. Counts that are no counts are left to the
-        # library, whose message says so.
+        # The set-up checks the undeformed distance and the load, but does not use them. Invalid counts are left to the library, which has a message for them.
         scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, None, 0.0, **self._bodies,
                       effects={"influence": influence, "row_tables": row_tables, "friction": friction, "visco": visco, **self._effects})
         scene.struct.my, scene.struct.mx = self._shape
@@ -184,7 +183,7 @@ class Solver:
         contact: Sequence[npt.ArrayLike] | npt.NDArray[Any] | None = None,
         **given: Unpack[SolveOptions],
     ) -> list[Result]:
-        """Solves one problem for each undeformed distance, as many at a time as the solver was set up with `threads`.
+        """Solves one problem for each undeformed distance, as many at a time as the `threads` of the set-up.
 
         Parameters
         ----------
@@ -195,7 +194,7 @@ class Solver:
         pressure_limit : float or array_like, (my, mx), optional
             For all problems.
         friction : mapping, optional
-            For all problems, as for `solve`, but "continues" is refused: the order of the solves is not known.
+            For all problems, as for `solve`, but "continues" is refused, because the order of the solves is not defined.
         adhesion : mapping, optional
             For all problems, as for `solve`.
         pressure, contact : sequence of array_like, (count, my, mx), optional
@@ -206,8 +205,7 @@ class Solver:
         Returns
         -------
         list of Result
-            A problem that is refused does not keep the others from being solved: its `status` is negative, its `message` says why, its
-            arrays mean nothing.
+            A refused problem does not affect the others: its `status` is negative, its `message` says why, and its arrays have no meaning.
 
         Raises
         ------
@@ -224,7 +222,7 @@ class Solver:
             guess, area = (None if values is None else values[i] for values in (pressure, contact))
             problems.append((scene, Outputs(self._shape, guess, area, struct, friction is not None, scene, adhesion is not None)))
         threads = self._given.get("threads", 1) or os.cpu_count() or 1
-        # The limit is that of the whole call.
+        # The time limit is that of the whole call.
         clock, results = Clock(struct.max_seconds), []
         for part in parts(count, threads):
             struct.max_seconds = clock.left
@@ -256,16 +254,16 @@ class Solver:
         progress: Callable[[Progress], Any] | bool | None = None,
         **given: Unpack[SolveOptions],
     ) -> TangentialResult:
-        """The function `solve_tangential`, with what this solver keeps: coefficients, operators, and the tractions found last.
+        """The function `solve_tangential`, with the coefficients, the operators and the last tractions of this solver.
 
         Parameters
         ----------
         pressure : array_like, (my, mx)
-            Those that are not positive count as no contact.
+            Given pressures; those that are not positive count as no contact.
         friction : mapping
-            As for `solve`; `"continues": True`: the tractions before are those found last.
+            As for `solve`; `"continues": True`: the previous tractions are the last ones of this solver.
         progress, **given
-            As for `solve`; `initial_guess="PREVIOUS"` starts from the tractions found last.
+            As for `solve`; `initial_guess="PREVIOUS"` starts from the last tractions.
 
         Returns
         -------
@@ -285,14 +283,14 @@ class Solver:
         progress: Callable[[Progress], Any] | bool | None = None,
         **given: Unpack[SolveOptions],
     ) -> FrictionBatch:
-        """The function `friction_batch` for pressures of one's own, with the coefficients and operators that this solver keeps.
+        """The function `friction_batch` for given pressures, with the coefficients and operators of this solver.
 
         Parameters
         ----------
         pressure : array_like, (my, mx)
-            Those that are not positive count as no contact.
+            Given pressures; those that are not positive count as no contact.
         entries : array_like, (n, 3)
-            Of each entry what is prescribed in x and in y, and the spin.
+            For each entry the prescribed values in x and in y, and the spin.
         friction, fields, progress, **given
             As for `friction_batch`.
 
@@ -305,7 +303,7 @@ class Solver:
         return table_of(scene, pressures, entries, options({**self._given, **given}), progress, fields, self._handle, self._units)
 
     def set_influence(self, influence: Any = None, friction: Mapping[str, Any] | None = None) -> None:
-        """Gives later solves other influence coefficients; only for a solver that was set up with some.
+        """Sets other influence coefficients for later solves; only for a solver that was set up with some.
 
         Parameters
         ----------
@@ -320,7 +318,7 @@ class Solver:
         check(*called(library.contact_normal_solver_set_influence, *structs, handle=self._handle, keep=(table, kept)))
 
     def product(self, pressure: npt.ArrayLike) -> Doubles:
-        """The displacements u = A p of pressures of any sign, with all effects of the set-up that A has.
+        """The displacements u = A p of pressures of any sign, with all effects of the set-up that are part of A.
 
         Parameters
         ----------
@@ -330,7 +328,7 @@ class Solver:
         Returns
         -------
         ndarray, (my, mx)
-            Displacements; the last result of the solver stays.
+            Displacements; the last result of the solver does not change.
         """
         given = doubles("pressure", pressure, self._shape)
         found = np.zeros(self._shape)
@@ -338,7 +336,7 @@ class Solver:
         return found
 
     def stiffness(self) -> float:
-        """dF/d approach of the last result, a force per length: while contact area, pressures at their limit and tractions stay.
+        """dF/d approach of the last result, a force per length, for a constant contact area, constant tractions, and constant pressures at their limit.
 
         Raises
         ------
@@ -354,7 +352,7 @@ class Solver:
         return value.value
 
     def close(self) -> None:
-        """Frees the handle, at once or when the call that uses it returns; a second call does nothing."""
+        """Frees the handle, at once or when the call that uses it returns; a second call has no effect."""
         self._handle.close()
 
     def __enter__(self) -> Solver:

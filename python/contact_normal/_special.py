@@ -116,7 +116,7 @@ def influence_half_space(
     (8, 16)
     """
     cx, cy = integer("cx", cx), integer("cy", cy)
-    # Sizes that are no sizes are left to the library, whose message says so.
+    # Invalid sizes are left to the library, which has a message for them.
     table = np.zeros((2 * max(cy, 0), 2 * max(cx, 0)))
     constants = bodies(shear_modulus, poisson_ratio, young_modulus, e_star)[:2]
     size = number("dx", dx), number("dy", dy)
@@ -135,7 +135,7 @@ def influence_rolling(
     visco: Mapping[str, Any],
     speed: float,
 ) -> Doubles:
-    """The influence coefficients of bodies that relax and roll steadily, as a table that `influence` takes. It serves the normal problem.
+    """The influence coefficients of viscoelastic bodies in steady rolling, as a table that `influence` takes, for the normal problem.
 
     Parameters
     ----------
@@ -144,11 +144,11 @@ def influence_rolling(
     dx, dy : float
         Element sizes.
     shear_modulus, poisson_ratio
-        As for `solve`; the moduli are those at once.
+        As for `solve`; the moduli are the instantaneous ones.
     visco : mapping
         "modulus" and "time" of the branches, as for `solve`.
     speed : float
-        How fast the bodies roll towards +x; < 0: towards -x.
+        The velocity at which the bodies roll towards +x; < 0: towards -x.
 
     Returns
     -------
@@ -177,13 +177,13 @@ def influence_rolling_tangential(
     visco: Mapping[str, Any],
     speed: float,
 ) -> Doubles:
-    """The tangential influence coefficients of bodies that relax and roll steadily, for `friction=dict(influence=(xx, yy, xy), ...)` in steady rolling.
+    """The tangential influence coefficients of viscoelastic bodies, for `friction=dict(influence=(xx, yy, xy), ...)` in steady rolling.
 
     Parameters
     ----------
     cx, cy, dx, dy, shear_modulus, poisson_ratio, visco, speed
-        As for `influence_rolling`; the bodies must be alike, at once and as they relax. The tables must reach across the grid, and across the contact area
-        and a step.
+        As for `influence_rolling`; the bodies must be alike, both instantaneously and in relaxation. The tables must cover the offsets within the grid, and
+        those within the contact area plus a step.
 
     Returns
     -------
@@ -217,27 +217,27 @@ def _rolling(function: Any, more: tuple[int, ...], sizes: tuple[int, int, float,
 def coating_compliance(
     thickness: float, shear_modulus: float, poisson_ratio: float, wave_number: npt.ArrayLike, *, below: tuple[float, float]
 ) -> Doubles:
-    """What a coated body gives way to a pressure wave: the amplitude of the displacement over that of the pressure.
+    """The compliance of a coated body for a pressure wave: the amplitude of the displacement over that of the pressure.
 
-    To compare a coating with a formula of one's own: (1 - nu)/(G k) for a body of one material.
+    For comparisons of a coating with other formulas. Without a coating it is (1 - nu)/(G k).
 
     Parameters
     ----------
     thickness, shear_modulus, poisson_ratio : float
-        Of the coating, as in the effect `coating` of `solve`.
+        Constants of the coating, as in the effect `coating` of `solve`.
     wave_number : array_like
         2 pi over the wave's length, > 0.
     below : (shear_modulus, poisson_ratio)
-        Of the body below.
+        Constants of the substrate.
 
     Returns
     -------
     ndarray
-        A length per pressure, of the shape of `wave_number`.
+        Compliances, lengths per pressure, with the shape of `wave_number`.
 
     Examples
     --------
-    A wave much shorter than the coating is thick feels nothing else, a much longer one only the body below:
+    A wave much shorter than the thickness of the coating depends on the coating only, a much longer one on the substrate only:
 
     >>> import contact_normal
     >>> short, long = contact_normal.coating_compliance(1.0, 4.0, 0.3, [1e3, 1e-4], below=(1.0, 0.3)) * [1e3, 1e-4]

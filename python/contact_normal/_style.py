@@ -1,4 +1,4 @@
-"""The style of this project's pictures: contact_normal.mplstyle, and dark.mplstyle over it for dark pages."""
+"""The style of this project's pictures: contact_normal.mplstyle, with dark.mplstyle over it for dark pages."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ DARK = Path(__file__).with_name("dark.mplstyle")
 
 
 def matplotlib_style(dark: bool = False) -> Any:
-    """A context in which matplotlib draws in the style. Needs matplotlib."""
+    """A context in which matplotlib uses the style. Needs matplotlib."""
     try:
         from matplotlib import style
     except ImportError as error:

@@ -1,4 +1,4 @@
-"""The tangential problem of pressures that are known."""
+"""The tangential problem for given pressures."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def with_pressures(
     h: Any, pressure: Any, dx: Any, dy: Any, loads: Mapping[str, Any], **given: Any
 ) -> tuple[Scene, Doubles | None]:
-    """The scene of a surface, or of pressures that are given: then neither the surface nor the load matters."""
+    """The scene of a surface, or of given pressures, for which neither the surface nor the load is used."""
     if (given["shear_modulus"] is None) == (given["young_modulus"] is None):
         raise TypeError("give either shear_modulus or young_modulus, the elastic constants of the bodies, and only one of them")
     if pressure is None:
@@ -58,23 +58,23 @@ def solve_tangential(
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[SolveOptions],
 ) -> TangentialResult:
-    """Solves the tangential problem of pressures of one's own: tractions, slip, and which elements stick.
+    """Solves the tangential problem for given pressures: tractions, slip, and the sticking elements.
 
-    Tractions do not change the pressures: of unlike bodies this is one turn of two. Many motions or forces of the same pressures are solved
-    by `friction_batch`.
+    Tractions do not change the pressures: for unlike bodies this is half a turn between the two problems. `friction_batch` solves many motions or forces for
+    the same pressures.
 
     Parameters
     ----------
     pressure : array_like, (my, mx)
-        Those that are not positive count as no contact.
+        Given pressures; those that are not positive count as no contact.
     dx, dy : float
         Element sizes.
     friction : mapping
         As for `solve`.
     shear_modulus, poisson_ratio, young_modulus, influence, layer, coating, units, progress, **given
-        As for `solve`. With `influence` the friction needs coefficients of its own, too.
+        As for `solve`. With `influence` friction also needs its own coefficients.
     period
-        Refused, as `solve` refuses it beside friction.
+        Refused, as in `solve` with friction.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def solve_tangential(
 
     Examples
     --------
-    Half of what friction can carry, by a uniform pressure:
+    Half of the greatest force, for a uniform pressure:
 
     >>> import numpy as np, contact_normal
     >>> pressure = np.pad(np.full((8, 8), 100.0), 2)

@@ -1,4 +1,4 @@
-"""A limit of time that several calls of the library share, and whether one of them was ended."""
+"""A time limit that several calls of the library share, and whether one of them was ended."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from ._constants import CANCELLED, ITERATION_LIMIT, OK
 if TYPE_CHECKING:
     from ._result import Result
 
-# Seconds that are left where none are: 0 would be no limit.
+# Seconds that are passed if none are left: 0 would be no limit.
 _LEAST = 1e-9
 
 
 class Clock:
-    """A limit of so many seconds from now on; 0: none."""
+    """A limit of `seconds` from now on; 0: none."""
 
     def __init__(self, seconds: float) -> None:
         self._began, self._seconds = time.monotonic(), seconds
@@ -27,7 +27,7 @@ class Clock:
 
     @property
     def left(self) -> float:
-        """The limit of the next call; what is no limit stays, for the library to judge."""
+        """The limit of the next call. Invalid limits are passed on, for the library to refuse."""
         return max(self._rest(), _LEAST) if self._seconds > 0.0 else self._seconds
 
     @property
@@ -37,7 +37,7 @@ class Clock:
 
 
 class TimeLimit:
-    """That of the option `max_seconds`, if it is given, from now on. A callable `progress` that cancels a solve ends the others, too."""
+    """The limit of the option `max_seconds`, if it is given, from now on. A callable `progress` that cancels a solve also ends the others."""
 
     def __init__(self, given: Mapping[str, Any]) -> None:
         self._clock = Clock(number("max_seconds", given.get("max_seconds", 0.0)))
@@ -55,19 +55,19 @@ class TimeLimit:
         return self._clock.is_over
 
     def _tell(self, progress: Any) -> bool:
-        # The status of the solve may tell of something else.
+        # The status of the solve may have another reason.
         if is_cancelled := bool(self._progress(progress)):
             self._is_cancelled = True
         return is_cancelled
 
     def ended(self, result: Result) -> bool:
-        """Whether a solve was cancelled, or stopped early since no time is left: no other one may follow it. The status tells that it was cancelled."""
+        """Whether a solve was cancelled, or stopped early without time left, so that no other one may follow. A cancelled one gets the status CANCELLED."""
         if self._is_cancelled and result.status == OK:
             _stop(result, CANCELLED, "the progress callback cancelled")
         return self._is_cancelled or result.status == CANCELLED or (result.status != OK and self._clock.is_over)
 
     def leaves_none(self, result: Result, why: str) -> bool:
-        """Whether no time is left for a solve after this one; its status and message then tell so, and what is missing."""
+        """Whether no time is left after this solve; its status and message then say so, and what is missing."""
         if self._clock.is_over:
             _stop(result, ITERATION_LIMIT, f"max_seconds was reached {why}")
             return True
@@ -75,7 +75,7 @@ class TimeLimit:
 
 
 def _stop(result: Result, status: int, why: str) -> None:
-    """Says of a result that what was asked for ended at it."""
+    """Sets the status and the message of a result at which the call ended."""
     if result.status == OK:
         result.status = status
     result.message = "\n".join(text for text in (why, result.message) if text)

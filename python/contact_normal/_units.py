@@ -1,4 +1,4 @@
-"""Names of the units of lengths and forces, and the units that follow from them for pressures, areas and moments."""
+"""Names of the units of lengths and forces, and the units of pressures, areas and moments that follow from them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _POWERS = {"length": (1, 0), "force": (0, 1), "pressure": (-2, 1), "area": (2, 0), "moment": (1, 1)}
 _PRESSURES = {("m", "N"): "Pa", ("mm", "N"): "MPa", ("um", "N"): "TPa", ("m", "kN"): "kPa", ("mm", "kN"): "GPa",
               ("um", "mN"): "GPa", ("um", "uN"): "MPa", ("nm", "nN"): "GPa"}
-# Names that are never of the other kind.
+# Names that can only be units of length.
 _METRES = {"pm": 1e-12, "Å": 1e-10, "nm": 1e-9, "um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0}
 _LENGTHS = {"nm", "um", "mm", "cm", "m"}
 _NEWTONS = {"nN": 1e-9, "uN": 1e-6, "mN": 1e-3, "N": 1.0, "kN": 1e3, "MN": 1e6}
@@ -41,12 +41,12 @@ def same_length(one: str, other: str) -> bool:
 
 
 def in_metres(name: str) -> float | None:
-    """A unit of length in metres; None: no such unit is known."""
+    """A unit of length in metres, or None if it is unknown."""
     return _METRES.get(_symbol(name))
 
 
 def in_pascal(units: Units) -> float | None:
-    """The unit of pressures in pascal; None: the units are not named, or not known."""
+    """The unit of pressures in pascal, or None if the units are not named or unknown."""
     if units is None:
         return None
     length, force = in_metres(units[0]), _NEWTONS.get(_latin(units[1]))
@@ -60,7 +60,7 @@ class WithUnits:
 
     @property
     def units(self) -> Units:
-        """Names of the units of lengths and forces, as ("mm", "N"), for pictures and files; None: not told."""
+        """Names of the units of lengths and forces, as ("mm", "N"), for pictures and files; None: unknown."""
         return self._units
 
     @units.setter
@@ -90,7 +90,7 @@ def unit(kind: str, units: Units) -> str:
 
 
 def with_unit(value: str, kind: str, units: Units) -> str:
-    """A number with its unit."""
+    """A value with its unit."""
     return f"{value} {unit(kind, units)}" if units else value
 
 
@@ -104,5 +104,5 @@ def _raised(text: str) -> str:
 
 
 def title(value: str, kind: str, units: Units) -> str:
-    """A number with its unit, as it stands above a picture: with raised exponents."""
+    """A value with its unit for the title of a picture, with raised exponents."""
     return f"{value} {_raised(unit(kind, units))}" if units else value

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class FrictionalWear(NamedTuple):
-    """What friction did.
+    """Frictional work and wear.
 
     Attributes
     ----------
@@ -26,15 +26,15 @@ class FrictionalWear(NamedTuple):
     depth : array, (my, mx)
         The depth of wear of each element, a length.
     passage : array, (my,), or None
-        What a point of a surface that rolls along x loses while it passes through the contact once; None without a rolling distance.
+        The loss of a point of a surface that rolls along x in one passage through the contact; None without a rolling distance.
     total_work : float
         The work of all elements, an energy.
     volume : float
-        The material that wears off.
+        The volume of worn material.
     largest_depth : float
         The largest depth of wear.
     at : (float, float)
-        Where the largest depth is, (x, y) from the middle of the grid.
+        The place (x, y) of the largest depth, relative to the middle of the grid.
     """
 
     work: npt.NDArray[np.float64]
@@ -61,26 +61,26 @@ def frictional_wear(
     steps: float = 1.0,
     rolling_distance: float | None = None,
 ) -> FrictionalWear:
-    """Frictional work and depth of wear (Archard) of each element, from what a solve with friction returned.
+    """Computes the frictional work and the depth of wear (Archard) of each element, from the result of a solve with friction.
 
-    The depth is K/H times the frictional work per area, which is -(q . s), or with pressures K/H the pressure times the length of s.
+    The depth is K/H times the frictional work per area, which is -(q . s). With pressures it is K/H times the pressure times the length of s.
 
     Parameters
     ----------
     traction, slip : array_like, (2, my, mx)
-        Tractions on body 1, and slips of a step, as a result has them.
+        Tractions on body 1, and slips of a step, as in a result.
     dx, dy : float
         Element sizes.
     coefficient : float or array_like, (my, mx)
-        K, the wear coefficient; by default nothing wears, and only the work is computed.
+        K, the wear coefficient; by default 0, so that only the work is computed.
     hardness : float
         H, a pressure; with 1 (default) the coefficient is K/H, a volume per energy.
     pressure : array_like, (my, mx), optional
-        Pressures: the depth is that of load times distance.
+        Pressures: the depth is then that of load times distance.
     steps : float
-        How many steps `work` and `depth` are those of: L/dq for a length L that is rolled by steps of dq, V/dq for a power.
+        The number of steps of `work` and `depth`: L/dq for a length L that is rolled in steps of dq, V/dq for a power.
     rolling_distance : float, optional
-        dq, the length of a step that rolls along x: then there are passages.
+        dq, the length of a step of rolling along x. It is needed for passages.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 """Rollers and gear teeth by their radii, crowns and profiles: gaps of lines and of crowned contacts.
 
-x runs in the direction of rolling, y along the axis of the roller. Two teeth of spur gears touch like two cylinders whose radii are the
+x runs in the rolling direction, y along the axis of the roller. Two teeth of spur gears touch like two cylinders whose radii are the
 radii of curvature of the flanks at the point of contact::
 
     from contact_normal import rollers
@@ -26,7 +26,7 @@ from ._units import Units, checked
 if TYPE_CHECKING:
     from ._arguments import Doubles
 
-    # Drop of the surface of a roller below its cylinder, at places along its axis.
+    # The drop of the surface of a roller below its cylinder, as a function of places along its axis.
     Drop = Callable[[Doubles], Doubles]
 
 # The factor of a logarithmic drop divided by the length is some 1e-4 for rollers of steel. Outside these limits the units are probably mixed.
@@ -72,7 +72,7 @@ def _drops(drop: Any) -> list[Any]:
 
 
 def _dropped(drop: Drop, y: Doubles) -> Doubles:
-    """The drop at places y, checked: it may be a function of the caller."""
+    """The drop at places y, checked, because it may be a function of the caller."""
     found = np.asarray(drop(y), dtype=np.float64)
     if found.shape not in ((), y.shape) or np.isnan(found).any():
         what = f"nan at y = {y[np.isnan(found)][0]:g}" if found.shape == y.shape else f"the shape {found.shape}"
@@ -87,8 +87,7 @@ _STEEPEST = 0.3
 
 
 def circle(x: Any, radius: float) -> Doubles:
-    """The distance of a circle from its tangent, at x from the point where they touch: exact, not a parabola; inf beyond the radius. A negative
-    radius is a hollow."""
+    """The distance of a circle from its tangent, at x from their common point: exact, not a parabola; inf beyond the radius. A negative radius is a hollow."""
     x, r = np.asarray(x, dtype=np.float64), abs(radius)
     if np.isinf(r):
         return np.zeros_like(x)
@@ -124,13 +123,13 @@ def _logarithm(y: Any, half: float, relief: float) -> Doubles:
 
 
 def no_drop(length: float) -> Drop:
-    """A cylinder with sharp ends. Pressures at its ends have no bound: finer grids find larger ones."""
+    """The drop of a cylinder with sharp ends. The pressures at its ends grow without bound on finer grids."""
     half = 0.5 * _positive("length", length)
     return _OfRoller(half, _sharp)
 
 
 def crown(length: float, radius: float, straight: float = 0.0) -> Drop:
-    """A roller crowned by a circular arc.
+    """The drop of a roller that is crowned by a circular arc.
 
     Parameters
     ----------
@@ -151,7 +150,7 @@ def crown(length: float, radius: float, straight: float = 0.0) -> Drop:
 
 
 def logarithmic(length: float, force: float, e_star: float) -> Drop:
-    """The logarithmic profile of Lundberg (1939). Under the force it is made for, the pressure is nearly the same all along the roller.
+    """The logarithmic profile of Lundberg (1939). Under its design force the pressure is nearly uniform along the roller.
 
     drop(y) = force/(pi length E*) ln(1/(1 - (2 y/length)^2))
 
@@ -160,7 +159,7 @@ def logarithmic(length: float, force: float, e_star: float) -> Drop:
     length : float
         Length of the roller.
     force : float
-        The force that the profile is made for.
+        The design force of the profile.
     e_star : float
         E* of both bodies.
     """
@@ -173,7 +172,7 @@ def logarithmic(length: float, force: float, e_star: float) -> Drop:
 
 
 def iso_16281(length: float, diameter: float) -> Drop:
-    """The profile that ISO/TS 16281:2008 assumes for rollers at most 2.5 times as long as thick.
+    """The profile that ISO/TS 16281:2008 assumes for rollers at most 2.5 times as long as their diameter.
 
     drop(y) = 0.00035 diameter ln(1/(1 - (2 y/length)^2)). It is Lundberg's profile for a largest pressure of some 3000 N/mm2 between bodies of steel.
     """
@@ -204,21 +203,21 @@ def gap(
     tilt: float = 0.0,
     units: Units = None,
 ) -> Gap:
-    """The gap of two rollers, or of a roller and a raceway, on a grid around the point where they touch first.
+    """The gap of two rollers, or of a roller and a raceway, on a grid around the point of first contact.
 
     Parameters
     ----------
     size : (float, float)
-        Size of the grid in x, the direction of rolling, and in y, along the axis.
+        Size of the grid in x, the rolling direction, and in y, along the axis.
     elements : (int, int)
         Elements in x and in y.
     radii : sequence of float
-        Radius of each body in the direction of rolling; negative: a hollow, as an outer raceway; inf: flat.
+        Radius of each body in the rolling direction; negative: a hollow, as an outer raceway; inf: flat.
     drop : function of an array, or sequence of them
-        Drop of the surface below its cylinder, at places y, of one roller or of each: from `crown`, `logarithmic`, `iso_16281` or `no_drop`, or a
-        function of your own. inf: no surface.
+        Drop of the surface below its cylinder, as a function of places y, of one roller or of each: from `crown`, `logarithmic`, `iso_16281` or `no_drop`, or a
+        function of the caller. inf: no surface.
     crown_radii : sequence of float
-        Radii of the bodies along the axis, in place of `drop`; negative: a hollow.
+        Radii of the bodies along the axis, instead of `drop`; negative: a hollow.
     tilt : float
         Misalignment of the axes, in rad: the gap grows by tilt y.
     units : (str, str), optional

@@ -107,7 +107,7 @@ class Adhesion(unittest.TestCase):
         found = contact_normal.to_accuracy(H, D, D, target=3e-3, **scene)
         self.assertEqual(found.status, contact_normal.OK)
         self.assertAlmostEqual(found.force / rows.last("force").value, 1.0, delta=rows.last("force").error / abs(found.force))
-        # Where the bodies touch, p = q - sigma; the residual of both is 1e-6.
+        # In contact p = q - sigma; the residual of both is 1e-6.
         differences = (found.contact_pressure - found.attraction - found.pressure)[found.contact]
         self.assertLess(abs(differences).max(), 1e-5 * found.contact_pressure.max())
         with self.assertRaisesRegex(contact_normal.ContactNormalError, "name a range"):

@@ -1,4 +1,4 @@
-"""The command line: what it reads, prints, writes and returns. Files that need more than numpy: tests_tables/test_command_files.py."""
+"""The command line: its inputs, output, files and exit codes. Files that need more than numpy: tests_tables/test_command_files.py."""
 
 import contextlib
 import importlib
@@ -19,7 +19,7 @@ import contact_normal as cn
 from contact_normal._command import main
 from contact_normal.surface import Gap
 
-# A steel ball of 50 mm on steel, off the middle, so that no transposed or mirrored grid passes; mm and N.
+# A steel ball of 50 mm on steel, off the middle, so that no transposed or mirrored grid passes; in mm and N.
 MY, MX, DX, DY, RADIUS, FORCE = 40, 56, 0.06, 0.05, 50.0, 1000.0
 MODULUS, RATIO = 82000.0, 0.28
 X, Y = (np.arange(MX) - 30.0) * DX, (np.arange(MY) - 17.0) * DY
@@ -29,7 +29,7 @@ BALL = ("--dx", str(DX), "--dy", str(DY), "--force", str(FORCE), *STEEL)
 
 
 def called(*arguments):
-    """The exit code and what was printed, on stdout and on stderr."""
+    """The exit code and the output on stdout and on stderr."""
     out, told = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(told):
         try:
@@ -40,7 +40,7 @@ def called(*arguments):
 
 
 def without(name):
-    """Imports of this package fail."""
+    """Makes imports of this package fail."""
     imported = importlib.import_module
 
     def refused(wanted, *more):
@@ -68,7 +68,7 @@ class Commands(unittest.TestCase):
             return dict(arrays)
 
     def undeformed(self, found):
-        """h - approach, of e = h - approach + u."""
+        """h - approach, by e = h - approach + u."""
         return found["deformed_distance"] - found["displacement"]
 
     def test_without_stderr_the_result_is_written(self):
@@ -86,7 +86,7 @@ class Commands(unittest.TestCase):
         e_star = MODULUS / (1 - RATIO)
         largest = (6 * FORCE * e_star**2 / (np.pi**3 * RADIUS**2)) ** (1 / 3)
         approach = (9 * FORCE**2 / (16 * RADIUS * e_star**2)) ** (1 / 3)
-        # On some 14 elements to the radius, errors are of the order of (1/14)^2.
+        # With some 14 elements per radius errors are of the order of (1/14)^2.
         self.assertAlmostEqual(float(values["largest pressure"].removesuffix(" MPa")) / largest, 1.0, delta=1 / 14**2)
         self.assertAlmostEqual(float(values["approach"].removesuffix(" mm")) / approach, 1.0, delta=1 / 14**2)
 
@@ -101,12 +101,12 @@ class Commands(unittest.TestCase):
             found = self.solved(self.folder / name, *BALL)
             self.assertEqual((found["dx"], found["dy"], found["pressure"].shape), (DX, DY, (MY, MX)))
             h = self.undeformed(found)
-            # Round-off of displacements of some .01 beside distances of .1: far below 1e-12.
+            # Round-off of displacements of some .01 with distances of .1: far below 1e-12.
             np.testing.assert_allclose(h - h.min(), gap, atol=1e-12)
         np.save(self.npy, gap)
         h = self.undeformed(self.solved(self.npy, *BALL, "--gap"))
         np.testing.assert_allclose(h - h.min(), gap, atol=1e-12)
-        # What the package writes as a gap has its element sizes.
+        # A gap that the package writes has its element sizes.
         Gap(gap, DX, DY).write(self.folder / "gap.txt")
         h = self.undeformed(self.solved(self.folder / "gap.txt", *BALL[4:], "--gap"))
         np.testing.assert_allclose(h - h.min(), gap, atol=1e-12)
@@ -120,7 +120,7 @@ class Commands(unittest.TestCase):
         code, _, told = called("solve", self.npy, *BALL, "--faults", "--level", "plane", "-o", self.folder / "level.npz")
         self.assertEqual((code, "spike" in told), (0, True), told)
         level = np.load(self.folder / "level.npz")
-        # A ball whose axis lies off the middle has a plane of its own, so its top moves; it is as large as before.
+        # A ball off the middle has a mean slope, so that levelling moves its top; its contact area does not change.
         self.assertFalse(level["contact"][3, 50])
         self.assertAlmostEqual(level["pressure"].max() / plain["pressure"].max(), 1.0, delta=1e-2)
 
@@ -137,7 +137,7 @@ class Commands(unittest.TestCase):
         np.save(self.npy, turned)
         plain = self.solved(self.npy, *BALL)["pressure"]
         np.save(self.npy, turned[::-1].T)
-        # The first index is that of x, and y falls along the second one.
+        # The first index is that of x, and y decreases along the second one.
         np.testing.assert_array_equal(self.solved(self.npy, *BALL, "--axes", "xy", "--top-first")["pressure"], plain)
 
     def test_negative_numbers_may_have_exponents(self):
@@ -179,7 +179,7 @@ class Commands(unittest.TestCase):
             np.save(self.npy, np.where(inside, hole, HEIGHTS))
             found = self.solved(self.npy, *BALL, *options)
             self.assertEqual((found["contact"][17, 30], found["contact"][17, 31]), (False, True))
-        # A fill value that is not named is a pit for heights: the contact is that without it.
+        # A fill value that is not named is a pit in heights: the contact does not change.
         self.assertEqual(called("solve", self.npy, *BALL)[0], 0)
         np.save(self.npy, np.full((4, 4), np.nan))
         code, _, told = called("solve", self.npy, *BALL)
@@ -189,7 +189,7 @@ class Commands(unittest.TestCase):
         pair = self.solved(self.npy, *BALL[:6], "--young-modulus", "210000", "70000", "--poisson-ratio", "0.28", "0.33")
         e_star = 1 / ((1 - 0.28**2) / 210000 + (1 - 0.33**2) / 70000)
         same = self.solved(self.npy, *BALL[:6], "--e-star", e_star)
-        # Both to a residual of 1e-6; pressures converge two digits behind.
+        # Both have a residual of 1e-6; errors of pressures are up to a hundred times larger.
         np.testing.assert_allclose(pair["pressure"], same["pressure"], atol=1e-4 * same["pressure"].max())
         self.assertGreater(same["pressure"].max(), 600.0)
         self.assertEqual(self.solved(self.npy, *BALL, "--pressure-limit", "600")["pressure"].max(), 600.0)
@@ -260,10 +260,10 @@ class Commands(unittest.TestCase):
         code, out, _ = called("prices", self.npy, *BALL, "--targets", "1e-2", "1e-15")
         rows = [line.split() for line in out.splitlines()]
         self.assertEqual((code, rows[0][:2], rows[1][0], rows[2][0]), (0, ["relative", "error"], "1.0e-02", "1.0e-15"))
-        # Enough for forces: docs/accuracy.md.
+        # With eight elements the error of the force is small enough (docs/accuracy.md).
         self.assertGreaterEqual(int(rows[1][1]), 8)
         self.assertTrue(out.rstrip().endswith("below round-off"), out)
-        # Effects reach the library: it refuses a compliance that is negative.
+        # Effects are passed to the library: it refuses a negative compliance.
         code, out, told = called("prices", self.npy, *BALL, "--layer", "-1e-12")
         self.assertNotEqual(code, 0)
         self.assertIn("compliance", told)
@@ -271,7 +271,7 @@ class Commands(unittest.TestCase):
     def test_bills(self):
         code, out, told = called("bill", self.npy, *BALL, "--layer", "1e-12", "--pressure-limit", "300", "--plot", self.folder / "bill.svg")
         self.assertEqual((code, told), (0, ""))
-        # The ball's largest pressure is 1000: a limit of 300 is reached.
+        # The largest pressure of the ball is 1000, above the limit of 300.
         self.assertEqual(out.splitlines()[-1], "needed: pressure_limit; negligible: layer")
         self.assertGreater((self.folder / "bill.svg").stat().st_size, 1000)
         code, out, _ = called("bill", self.npy, *BALL)
@@ -281,7 +281,7 @@ class Commands(unittest.TestCase):
         code, out, _ = called("creep-table", "--xi", "0:0.02:3", "--eta", "0", "--phi", "0", "--elements", "35")
         rows = [dict(zip(out.splitlines()[0].split(), map(float, line.split()))) for line in out.splitlines()[1:]]
         self.assertEqual((code, [row["xi"] for row in rows], rows[0]["force_x"]), (0, [0.0, 0.01, 0.02], 0.0))
-        # Kalker's linear theory: C11 of a circle is 4.12 to 4.27 for Poisson ratios of .25 to .3; saturation takes 1.4 %, first order in
+        # Kalker's linear theory: C11 of a circle is 4.12 to 4.27 for Poisson ratios of .25 to .3. The effect of saturation is 1.4 %, the first-order error with
         # 1/35 a few percent.
         self.assertLess(abs(rows[1]["force_x"] / (-0.01 * 4.2) - 1), 0.1)
 

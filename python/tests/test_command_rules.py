@@ -1,4 +1,4 @@
-"""The command line: periods of files, and what does not fit into memory."""
+"""The command line: periods of files, and problems that do not fit into memory."""
 
 import dataclasses
 import tempfile

@@ -1,4 +1,4 @@
-"""Signals end what the library does: Ctrl-C, Jupyter's Interrupt, handlers that raise. Each call here would go on for hours otherwise."""
+"""Signals end calls of the library: Ctrl-C, Jupyter's Interrupt, handlers that raise. Otherwise each call here would last for hours."""
 
 import ctypes
 import os
@@ -19,19 +19,19 @@ STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
 M, D = 64, 0.1
 X = (np.arange(M) - 0.5 * (M - 1)) * D
 H = 0.2 * (X[None, :] ** 2 + X[:, None] ** 2)
-# Sweeps that hardly change the pressures: billions of cycles.
+# Sweeps that hardly change the pressures, with billions of cycles.
 ENDLESS = {"method": "MULTIGRID", "smoother": "JACOBI", "relaxation": 1e-9, "max_cycles": 2**31 - 1}
 
 
 def setUpModule():
     if os.name == "nt":
         raise unittest.SkipTest("os.kill sends no signals on Windows: it ends the process")
-    # A shell lets what it starts in the background ignore SIGINT.
+    # A shell lets background processes ignore SIGINT.
     unittest.addModuleCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
 
 
 def send(number=signal.SIGINT, seconds=0.2):
-    """Sends this process a signal soon."""
+    """Sends this process a signal after a short time."""
     timer = threading.Timer(seconds, os.kill, (os.getpid(), number))
     timer.start()
     return timer
@@ -49,7 +49,7 @@ class Interrupts(unittest.TestCase):
 
     def test_a_solve_with_progress(self):
         told = []
-        # In the callback or beside it: again and again, for what is raised in a callback of ctypes may be lost.
+        # Within the callback or outside, many times, because an exception in a callback of ctypes may be lost.
         for _ in range(20):
             timer = send(seconds=0.05)
             with self.assertRaises(KeyboardInterrupt):
@@ -90,7 +90,7 @@ class Interrupts(unittest.TestCase):
 
     def test_a_solver_waits_for_what_was_given_up(self):
         def slow(watched, told, user, call=_callbacks.Watched._call):
-            # In C, so that no signal wakes it.
+            # It sleeps in C, so that no signal wakes it.
             ctypes.CDLL(None).usleep(400000)
             return call(watched, told, user)
 
@@ -141,7 +141,7 @@ class Interrupts(unittest.TestCase):
 
 class Threads(unittest.TestCase):
     def setUp(self):
-        # What other tests gave up may still be on its way to the end of a cycle.
+        # Calls that other tests gave up may still be in a cycle.
         _calls._wait_for_given_up()
 
     def test_callbacks_run_on_the_thread_that_asks(self):
@@ -188,7 +188,7 @@ class Threads(unittest.TestCase):
         self.addCleanup(_calls._given_up.discard, call)
         with self.assertRaises(KeyboardInterrupt):
             call.result(Lost())
-        # The end of the process would wait for it.
+        # The end of the process would wait for this call.
         self.assertNotIn(call, _calls._given_up)
         call.make()
         self.assertIsNone(call._error)
@@ -216,7 +216,7 @@ class Threads(unittest.TestCase):
     def test_a_fork_has_no_threads_of_ours(self):
         cn.solve(H, D, D, force=1000.0, **STEEL)
         with warnings.catch_warnings():
-            # From Python 3.12 on a fork of a process with threads warns.
+            # From Python 3.12 on a fork of a process with threads has a warning.
             warnings.simplefilter("error")
             child = os.fork()
             if child == 0:
@@ -236,7 +236,7 @@ given = {({"force": 1000.0, **ENDLESS, **STEEL})}
 def send():
     threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
 """ + script
-        # It would hang, not fail, where the process waits for a solve: the test of the tests ends it then.
+        # If the process waits for a solve, it hangs and does not fail: the runner of the tests then ends it.
         return subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, **process)
 
     def test_the_process_ends_after_an_interrupt(self):
@@ -245,7 +245,7 @@ def send():
         self.assertTrue(ended.stderr.strip().endswith("KeyboardInterrupt"), ended.stderr)
 
     def test_the_process_ends_with_a_solve_that_goes_on_for_a_while(self):
-        # A callback that sleeps in C: the worker has not ended when the interpreter does.
+        # The callback sleeps in C, so that the worker outlasts the interpreter.
         ended = self.end_of("""
 import atexit, ctypes
 from contact_normal import _callbacks, _calls
@@ -272,7 +272,7 @@ try:
 except KeyboardInterrupt:
     print("interrupted")
 """, start_new_session=True)
-        # Nothing is told by the processes that computed.
+        # The worker processes print nothing.
         self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "interrupted\n", ""))
 
     def test_a_solve_at_the_end_of_the_process(self):

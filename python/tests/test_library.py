@@ -1,4 +1,4 @@
-"""The library that is loaded must suit the package: which one is tried, its ABI version, structs of other versions."""
+"""The loaded library must suit the package: the choice of the library, its ABI version, structs of other versions."""
 
 import ctypes
 import os
@@ -28,7 +28,7 @@ class Function:
 
 
 class Another:
-    """This library with some of its functions exchanged."""
+    """This library with some functions replaced."""
 
     def __init__(self, **functions):
         self.functions = {f"contact_normal_{name}": Function(call) for name, call in functions.items()}
@@ -112,7 +112,7 @@ def solved(**given):
 
 
 class OtherVersions(unittest.TestCase):
-    """Structs grow at their end: a package of a newer version has longer ones than the library."""
+    """Structs grow at their end: those of a newer package are longer than those of the library."""
 
     def test_a_newer_package(self):
         expected = solved()

@@ -27,7 +27,7 @@ class Linear(unittest.TestCase):
             with self.assertRaises(contact_normal.ContactNormalError):
                 solver.stiffness()
             result = solver.solve(H, approach=0.01)
-            # F ~ approach^(3/2): dF/d approach = 3/2 F/approach, to the part of elements at the edge of the contact.
+            # F ~ approach^(3/2): dF/d approach = 3/2 F/approach, up to the share of elements at the edge of the contact.
             self.assertAlmostEqual(solver.stiffness() / (1.5 * result.force / result.approach), 1.0, delta=0.05)
 
 

@@ -1,4 +1,4 @@
-"""The Manchester benchmark: seven positions of an S1002 wheel on a UIC 60 rail, beside the results that another program prints."""
+"""The Manchester benchmark: seven positions of an S1002 wheel on a UIC 60 rail, compared with the output of another program."""
 
 import math
 import sys
@@ -15,12 +15,12 @@ import manchester  # noqa: E402
 
 
 def half_of_last_digit(value, digits=4):
-    """Half of the last of so many printed digits."""
+    """Half of the last of some printed digits."""
     return 0.5 * 10.0 ** (math.floor(math.log10(abs(value))) + 1 - digits) if value else 0.0
 
 
 def rounding_of(part, y):
-    """What half of the tenth digit of each coefficient is at y; of arcs and lines, whose constants have six digits behind the point, at a slope of 3."""
+    """The error at y by half of the tenth digit of each coefficient. For arcs and lines, whose constants have six decimals, with a slope of 3."""
     if len(part) < 3 or part in manchester.ARCS:
         return 2e-6
     return sum(half_of_last_digit(coefficient, 10) * abs(y) ** power for power, coefficient in enumerate(part))
@@ -28,7 +28,7 @@ def rounding_of(part, y):
 
 class Profiles(unittest.TestCase):
     def test_the_parts_of_the_wheel_meet(self):
-        # A wrong digit leaves a step, or a corner.
+        # A wrong digit would cause a step or a corner.
         for (end, part), (_, following) in zip(manchester.PARTS, manchester.PARTS[1:]):
             rounding = max(rounding_of(part, end), rounding_of(following, end))
             self.assertAlmostEqual(manchester.height(part, end), manchester.height(following, end), delta=rounding)
@@ -44,9 +44,9 @@ class Profiles(unittest.TestCase):
             sides = [np.linalg.norm(p - q) for p, q in ((a, b), (b, c), (c, a))]
             area = 0.5 * abs((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0])
             self.assertAlmostEqual(np.prod(sides) / (4.0 * area), radius, delta=1e-6 * radius)
-        # The flanks of 1:20 begin 14.26 mm below the top; a tenth of a millimetre further down the rail is 0.01 mm wider.
+        # The flanks of 1:20 begin 14.26 mm below the top; the rail is 0.01 mm wider a tenth of a millimetre further down.
         self.assertAlmostEqual(2.0 * np.interp(14.26, rail.z[rail.y > 0], rail.y[rail.y > 0]), 72.0, delta=1e-3)
-        # They pass into each other without a corner: slopes of points turn by at most 0.2 mm on the smallest radius.
+        # Segments are joined without corners: slopes of points change by at most 0.2 mm over the smallest radius.
         slopes = np.arctan2(np.diff(rail.z), np.diff(rail.y))
         self.assertLess(np.abs(np.diff(slopes)).max(), 1.01 * 0.2 / 13.0)
 
@@ -64,16 +64,16 @@ class Positions(unittest.TestCase):
             with self.subTest(y=row.y):
                 result, approach = manchester.pressed(manchester.contact_point(row), row)
                 self.assertEqual(result.status, cn.OK)
-                # The force has four digits, half of the last is 5e-4, of which the pressure has a third: 0.02 %. The grid lies elsewhere: the largest
-                # pressure is up to half an element beside the nearest centre, and a half ellipsoid of pressures of ten elements of half width is
-                # 1 - sqrt(1 - 0.5^2/10^2 - 0.5^2/16^2) = 0.17 % lower there. The rest, 0.1 %, is for the other program's surfaces between points.
+                # The force has four digits. Half of the last is 5e-4, which changes the pressure by a third of this: 0.02 %. The grids differ: the largest
+                # pressure may be half an element off the nearest centre. For a semi-ellipsoid with half-widths of ten and 16 elements it is lower there by 1 -
+                # sqrt(1 - 0.5^2/10^2 - 0.5^2/16^2) = 0.17 %. The rest, 0.1 %, is for the other program's surfaces between points.
                 self.assertAlmostEqual(result.max_pressure / row.largest, 1.0, delta=0.003)
-                # A count of the points of a grid in an oval of mean radius R, which lies anywhere, has the variance 0.676 R (Kendall 1948, of circles).
-                # Three deviations of the difference of two such counts:
+                # The number of grid points in an oval of mean radius R at a random place has the variance 0.676 R (Kendall 1948, for circles). Three standard
+                # deviations of the difference of two such numbers:
                 deviation = math.sqrt(0.676 * math.sqrt(row.elements / math.pi))
                 self.assertLess(abs((result.contact > 0).sum() - row.elements), 3.0 * math.sqrt(2.0) * deviation)
-                # Half of the last digit; two thirds of that of the force; and the least h of the other program's grid, half an element beside the
-                # least one of the bodies: of the 1.2 approaches at the border of our grid, n elements wide, it is 1/n^2.
+                # Half of the last digit; two thirds of that of the force; and the error of the least h of the other program's grid, half an element off the
+                # least one of the bodies: it is 1/n^2 of the 1.2 approaches at the border of our grid, n elements wide.
                 rows, columns = result.contact.shape
                 force = half_of_last_digit(row.force) / row.force
                 delta = 0.5e-5 + (2.0 / 3.0 * force + 1.2 * (rows**-2 + columns**-2)) * row.approach
@@ -84,7 +84,7 @@ class Positions(unittest.TestCase):
             with self.subTest(y=row.y):
                 point = manchester.contact_point(row)
                 overlap = -point.clearance * math.cos(point.angle)
-                # z has four digits behind the point; a roll lifts the left wheel by its distance from the middle; the approach has five.
+                # z has four decimals; a roll lifts the left wheel by its distance from the middle; the approach has five decimals.
                 delta = 0.5e-4 + half_of_last_digit(row.roll) * 758.0 + 0.5e-5
                 self.assertAlmostEqual(overlap, row.approach, delta=1.1 * delta)
 

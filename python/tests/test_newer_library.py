@@ -1,4 +1,4 @@
-"""A library that is newer than the package counts what the package has no name for; and numbers of grids that no library takes."""
+"""Constants of a library that is newer than the package, and sizes of grids that no library accepts."""
 
 import unittest
 

@@ -32,7 +32,7 @@ class Places(unittest.TestCase):
     package, prefix = Path("/clone/python/contact_normal"), Path("/prefix")
 
     def test_names(self):
-        # What cargo calls a cdylib on each platform.
+        # The name of a cdylib of cargo on each platform.
         for platform, built in (("linux", "libcontact_normal.so"), ("freebsd14", "libcontact_normal.so"),
                                 ("darwin", "libcontact_normal.dylib"), ("win32", "contact_normal.dll"), ("cygwin", "contact_normal.dll")):
             self.assertEqual(names(platform).built, built, platform)
@@ -70,14 +70,14 @@ class Places(unittest.TestCase):
                     _library.os.environ.pop("CONTACT_NORMAL_LIBRARY", None)
                     found = _library.candidates()
                     self.assertIn(str(place), found, platform)
-                    # It starts programs.
+                    # find_library starts other programs.
                     _library.ctypes.util.find_library.assert_not_called()
                     with mock.patch.object(_library, "places", return_value=[]):
                         self.assertEqual(_library.candidates(), [names(platform).installed], platform)
 
 
 def portable_executable(machine):
-    """The beginning of a DLL: the header's place stands at 0x3C."""
+    """The beginning of a DLL: the place of the header is at 0x3C."""
     return b"MZ" + bytes(0x3A) + struct.pack("<I", 0x80) + bytes(0x40) + b"PE\0\0" + struct.pack("<H", machine)
 
 

@@ -1,4 +1,4 @@
-"""Pictures show things where they are, the right way up, with the units that were told."""
+"""Pictures show places correctly, the right way up, and with the given units."""
 
 import copy
 import unittest
@@ -14,13 +14,13 @@ from matplotlib import pyplot  # noqa: E402
 STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
 MY, MX, D = 30, 40, 0.1
 X, Y = ((np.arange(m) - 0.5 * (m - 1)) * D for m in (MX, MY))
-# At the upper right, in quadrants that no mirror keeps.
+# The contact is at the upper right, so that mirrored pictures fail.
 CENTRE = (1.0, 0.5)
 H = 0.01 * ((X[None, :] - CENTRE[0]) ** 2 + 4.0 * (Y[:, None] - CENTRE[1]) ** 2)
 
 
 def colour_at(axes, x, y):
-    """The colour that is drawn at a place of the axes."""
+    """The colour at a place of the axes."""
     axes.figure.canvas.draw()
     pixels = np.asarray(axes.figure.canvas.buffer_rgba())[..., :3].astype(int)
     column, row = axes.transData.transform((x, y))
@@ -39,14 +39,14 @@ class Plots(unittest.TestCase):
         iy, ix = np.unravel_index(self.found.pressure.argmax(), H.shape)
         self.assertLess(max(abs(X[ix] - CENTRE[0]), abs(Y[iy] - CENTRE[1])), D)
         self.mirrored = [(-CENTRE[0], CENTRE[1]), (CENTRE[0], -CENTRE[1]), (-CENTRE[0], -CENTRE[1])]
-        # An ellipse: its long axis lies along x.
+        # The contact is an ellipse with its long axis along x.
         self.out_along_y = (CENTRE[0], CENTRE[1] + 0.45 * np.ptp(np.nonzero(self.found.contact)[1]) * D)
 
     def tearDown(self):
         pyplot.close("all")
 
     def assert_outline(self, axes, contact):
-        """The border is that of the contact area: segments, by their middles."""
+        """Asserts that the border is that of the contact area, by the middles of its segments."""
         drawn = {tuple(np.round(segment.mean(axis=0) / D, 2)) for lines in axes.collections if hasattr(lines, "get_segments")
                  for segment in lines.get_segments()}
         border = set()
@@ -210,7 +210,7 @@ class Plots(unittest.TestCase):
         axes.figure.canvas.draw()
         outline = next(lines for lines in axes.collections if hasattr(lines, "get_segments"))
         points = 72.0 / axes.figure.dpi * axes.get_window_extent().width / 128
-        # On both sides of an element: half of it remains.
+        # The line covers both sides of the edge: half of the element remains visible.
         self.assertLessEqual(outline.get_linewidths()[0], 0.5 * points)
         self.assertTrue(outline.get_rasterized() or len(outline.get_segments()) <= 4000)
 
@@ -219,7 +219,7 @@ class Plots(unittest.TestCase):
         with matplotlib_style(dark=True):
             axes = self.found.plot_traction()
             self.assertLess(sum(matplotlib.colors.to_rgb(axes.figure.get_facecolor())), 0.5)
-            # The exterior is dark as well, and letters are not.
+            # The exterior area is dark as well, but text is not.
             self.assertLess(axes.images[0].get_array()[0, 0].sum(), 1.5)
             self.assertGreater(sum(matplotlib.colors.to_rgb(axes.xaxis.label.get_color())), 2.0)
 

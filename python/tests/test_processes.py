@@ -1,4 +1,4 @@
-"""Processes that are forked after a solve with threads solve, too; threads of Python solve at once while Python goes on."""
+"""Forked processes can solve after a solve with threads; Python threads run during a solve of another one."""
 
 import concurrent.futures
 import multiprocessing
@@ -14,8 +14,7 @@ import contact_normal as cn
 from contact_normal import _creep_force_table
 
 STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
-# The child has none of the parent's threads: waiting for them would never end. This is hundreds of times what the solve takes, so that
-# a hang fails instead of hanging the tests.
+# The child has none of the parent's threads: waiting for them would never end. The limit is hundreds of times the solve, so that a hang is a failure.
 PATIENCE = 60
 
 
@@ -25,11 +24,11 @@ def ball(m, curvature):
 
 
 def forked(work):
-    """What `work()` returns in a forked process; None if it hangs, or dies."""
+    """The result of `work()` in a forked process; None if it hangs or dies."""
     near, far = multiprocessing.get_context("fork").Pipe(duplex=False)
     process = multiprocessing.get_context("fork").Process(target=lambda: far.send(work()))
     process.start()
-    # Else the end of a child that dies would not be seen.
+    # Otherwise the end of a child that dies would not be seen.
     far.close()
     try:
         found = near.recv() if near.poll(PATIENCE) else None
@@ -44,7 +43,7 @@ def forked(work):
 
 @unittest.skipUnless(hasattr(os, "fork"), "there is no fork")
 class Forks(unittest.TestCase):
-    # So many elements that threads share the work.
+    # With this number of elements threads share the work.
     M = 281
     H = ball(M, 0.001 * (64 / M) ** 2)
     SIZE = 12.8 / M
@@ -96,12 +95,12 @@ class Threads(unittest.TestCase):
         self.assertEqual(found, expected)
 
     def test_python_goes_on_while_a_thread_solves(self):
-        # ctypes releases the interpreter's lock around a call: another thread runs meanwhile. With the lock kept it stands still as long
-        # as the library solves, in each call; a busy machine may hold it up in some.
+        # ctypes releases the interpreter's lock during a call, so that another thread runs. With the lock it would stand still for the whole time in the
+        # library, in each call. On a busy machine it may stand still in some.
         self.assertTrue(any(self.longest_standstill() < 0.5 for _ in range(20)))
 
     def longest_standstill(self):
-        """The longest time that this thread stands still while another solves, of the time that the library takes."""
+        """The longest standstill of this thread while another one solves, relative to the time in the library."""
         ended = []
 
         def call():
@@ -119,7 +118,7 @@ class Threads(unittest.TestCase):
 
 class GivenUp(unittest.TestCase):
     def test_jobs_of_processes_that_are_stopped_are_not_cancelled(self):
-        # The thread of an executor prints a traceback where it tells a cancelled job that its process is gone.
+        # The thread of an executor prints a traceback if a cancelled job's process is gone.
         class Executor:
             def __init__(self, *_given, **_more):
                 jobs.clear()

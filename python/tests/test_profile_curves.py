@@ -1,4 +1,4 @@
-"""Profiles: their orientation, their places, smooth curves through them, and the files that hold them."""
+"""Profiles: their orientation and place, smooth curves through them, and their files."""
 
 import tempfile
 import tracemalloc
@@ -81,7 +81,7 @@ class Profiles(unittest.TestCase):
         twice = profiles.Profile(np.insert(plain.y, 180, plain.y[180] - 2e-5), np.insert(plain.z, 180, plain.z[180] + 1e-6), "wheel")
         self.assertEqual(len(twice.curve().y), len(plain.curve().y))
         self.assertLess(np.abs(np.diff(twice.curve().at(twice.curve().between(7))[3][1200:])).max(), 1e-4)
-        # The same numbers twice, once or at all points.
+        # Equal points, one or all of them.
         for often in (np.where(np.arange(len(plain.y)) == 150, 2, 1), 2):
             same = profiles.Profile(np.repeat(plain.y, often), np.repeat(plain.z, often), "wheel").curve()
             self.assertTrue(np.array_equal(same.y, plain.curve().y) and np.array_equal(same.z, plain.curve().z))
@@ -95,7 +95,7 @@ class Profiles(unittest.TestCase):
         for z in (9999.0, -9999.0):
             with self.assertRaisesRegex(ValueError, "stands? for 'not measured'"):
                 profiles.Profile(plain.y, np.where(np.arange(len(plain.z)) == k, z, plain.z), "rail")
-        # A face, and a rim below the tread, end a profile.
+        # A steep face, and a rim below the tread, end a profile.
         self.assertEqual(len(wheel().curve().y), len(wheel().y))
 
     def test_spikes_are_told(self):
@@ -134,7 +134,7 @@ class Profiles(unittest.TestCase):
 
     def test_a_tread_without_a_flange_is_no_profile_upside_down(self):
         y = np.linspace(-30.0, 60.0, 181)
-        # A chamfer of 5 mm at its outer end.
+        # A tread with a chamfer of 5 mm at its outer end.
         z = -y / 20.0 - np.maximum(y - 55.0, 0.0)
         tread = profiles.Profile(y, z, "wheel")
         self.assertEqual(len(tread.curve().y), 181)
@@ -163,7 +163,7 @@ class Profiles(unittest.TestCase):
         smooth = tread.smoothed(2.0)
         _, most = tracemalloc.get_traced_memory()
         tracemalloc.stop()
-        # Lists of numbers of Python take 32 bytes each.
+        # Lists of Python numbers take 32 bytes per number.
         self.assertLess(most, 20001 * 1000)
         inner = slice(2000, -2000)
         self.assertLess(np.abs(smooth.z + smooth.y / 20.0)[inner].max(), 0.01 / (1.0 + 4.0**4) * 1.02)
@@ -175,7 +175,7 @@ class Profiles(unittest.TestCase):
             waves = np.where(made.y > -35.2, 1e-3 * np.cos(2 * np.pi * made.y / wave), 0.0)
             smooth = profiles.Profile(made.y, made.z + waves, "wheel").smoothed(length)
             kept = (smooth.z - made.smoothed(length).z)[inner] @ waves[inner] / (waves[inner] @ waves[inner])
-            # The formula is that of a continuous line without ends.
+            # The formula is for an infinite continuous line.
             self.assertAlmostEqual(kept, 1.0 / (1.0 + (length / wave) ** 4), delta=0.01)
         with self.assertRaisesRegex(ValueError, "wave_length is 0.0"):
             made.smoothed(0.0)
@@ -203,7 +203,7 @@ class Files(unittest.TestCase):
     def test_the_header_of_simpack_is_obeyed(self):
         made = wheel()
         self.assert_same(profiles.read(self.simpack("a.prw", "", made.y, made.z)), made)
-        # As the benchmark's wheel: the flange at large y, mirrored and reversed by flags; in metres.
+        # As the benchmark's wheel: the flange is at large y, mirrored and reversed by flags; in metres.
         header = "mirror.y = 1 ! mirrored\n inversion = 1\n units.len.f = +1.000e+00"
         self.assert_same(profiles.read(self.simpack("b.prw", header, -made.y / 1000.0, made.z / 1000.0)), made)
         self.assert_same(profiles.read(self.simpack("c.PRW", "mirror.z = 1", made.y, -made.z)), made)
@@ -230,7 +230,7 @@ class Files(unittest.TestCase):
         for gap in (";", " ; ", "\t"):
             rows = "\n".join(f"{y:.9f}{gap}{z:.9f}".replace(".", ",") for y, z in zip(made.y.tolist(), made.z.tolist()))
             continental = profiles.read(self.written("continental.txt", rows), "wheel")
-            # Nine digits behind the point.
+            # Nine decimals.
             np.testing.assert_allclose((continental.y, continental.z), (made.y, made.z), atol=5e-10)
         with self.assertRaisesRegex(ValueError, 'kind is not known; give kind="wheel" or kind="rail"'):
             profiles.read(self.written("b.txt", rows))
@@ -261,7 +261,7 @@ class Files(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, r"column 0 of section.txt is 12.5 in every line; .*columns=\(1, 2\)"):
                 profiles.read(path, kind)
             self.assert_same(profiles.read(path, kind, columns=(1, 2)), made)
-        # Three columns of which the last is another quantity: the turn is named, and that columns may be meant.
+        # Three columns, of which the last is another quantity: the message names the right columns.
         made = wheel()
         path = self.written("mirrored.txt", "\n".join(f"{-y!r} {z!r} 0.5" for y, z in zip(made.y.tolist(), made.z.tolist())))
         with self.assertRaisesRegex(ValueError, r"mirror=True; or give columns=\(y, z\): the file has 3"):

@@ -1,4 +1,4 @@
-"""Profiles in other units, files that are not read as meant, and arguments out of their range."""
+"""Profiles in other units, files that are probably misread, and arguments out of their range."""
 
 import tempfile
 import unittest
@@ -28,7 +28,7 @@ class Units(unittest.TestCase):
                 self.refused(lambda f=factor: profiles.Wheelset(scaled(wheel(), 1.0 / f), flange_back_at=-70.0), "flange_back is ")
         self.refused(lambda: profiles.Wheelset(wheel(), flange_back_at=-7.0), "flange_back_at is -7; it is the y of the back")
         self.refused(lambda: profiles.Wheelset(wheel().moved(y=70.0), flange_back_at=-70.0), "flange_back_at is -70; .* smallest y is 0:")
-        # A tread from y = -20 has its back 50 mm beside; and a model is to its scale.
+        # A tread that begins at y = -20 has its back 50 mm away. A model has its own scale.
         tread = wheel().y > -20.0
         profiles.Wheelset(profiles.Profile(wheel().y[tread], wheel().z[tread], "wheel"), flange_back_at=-70.0)
         profiles.Wheelset(scaled(wheel(), 1.0 / 87.0), 460.0 / 87.0, 1360.0 / 87.0)
@@ -163,7 +163,7 @@ class Files(unittest.TestCase):
         for line in ("nan 1.0", "**** 1.0", "-20.0 nan"):
             with self.assertRaisesRegex(ValueError, "among its points"):
                 self.read([*self.rows[:20], line, *self.rows[21:]])
-        # Titles, a count and a date are none.
+        # Titles, a count and a date are no points.
         titles = ["*** a rail ***", "2 cuts, of which the first", "81", "12.05.2023 10:11"]
         self.assertEqual(len(self.read([*titles, *self.rows, "81 points"]).y), 81)
 
@@ -214,7 +214,7 @@ class Simpack(unittest.TestCase):
         for value in ("$_MIRROR", "1/40", "1 + 1", "true"):
             with self.assertRaisesRegex(ValueError, r"rotate = .* in its header; it must be a number: expressions"):
                 self.read(f"rotate = {value}")
-        # Texts and other names are of no account.
+        # Texts and other names have no effect.
         self.read("comment = 'a rail'\nfile = x\nversion = one")
 
     def test_units_bounds_and_kinds(self):

@@ -1,4 +1,4 @@
-"""The making of a grid for a wheel on a rail: no more steps than digits, and an end where no time is left."""
+"""The grid for a wheel on a rail: no more steps than digits need, and an end if no time is left."""
 
 import time
 import unittest

@@ -12,14 +12,14 @@ from contact_normal import profiles
 from contact_normal.surface import Gap
 
 STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
-# A conical tread, and a head that is one arc between two flanks. Lengths in mm.
+# A conical tread, and a head of one arc between two flanks. Lengths in mm.
 CONE, HEAD, RADIUS = 1.0 / 20.0, 300.0, 460.0
-# Interpolation by cubic splines, 5/384 d^4 f'''' with f'''' = 3/HEAD^3 and points d = 0.5 apart, is good to 1e-10; with a hundredfold reserve:
+# The error of cubic splines, 5/384 d^4 f'''' with f'''' = 3/HEAD^3 and points d = 0.5 apart, is 1e-10; with a margin of a hundred:
 EXACT = 1e-8
 
 
 def wheel(cone=CONE):
-    """A tread of one slope from y = -35 to 60, with a flange of 65 degrees and a rounded tip."""
+    """A tread with one slope from y = -35 to 60, with a flange of 65 degrees and a rounded tip."""
     tread = np.linspace(-35.0, 60.0, 191)
     y, z = [tread], [-cone * tread]
     flank = np.linspace(-46.0, -35.5, 40)
@@ -32,7 +32,7 @@ def wheel(cone=CONE):
 
 
 def rail(head=HEAD, reach=36.0, inner=None):
-    """A head of one arc, or of another one towards the track."""
+    """A head of one arc, or with another one towards the track."""
     y = np.linspace(-reach, reach, int(4 * reach) + 1)
     heads = np.where(y < 0.0, head if inner is None else inner, head)
     z = heads - np.sqrt(heads**2 - y**2)
@@ -44,7 +44,7 @@ def rail(head=HEAD, reach=36.0, inner=None):
 
 
 TRACK, WHEELSET = profiles.Track(rail()), profiles.Wheelset(wheel(), RADIUS, flange_back=1360.0)
-# The gauge point lies on the flank, 14 mm below the top; the head is symmetric about its middle, MIDDLE.
+# The gauge point is on the flank, 14 mm below the top; the head is symmetric about MIDDLE.
 ARC_END = HEAD - np.sqrt(HEAD**2 - 36.0**2)
 MIDDLE = 717.5 + 36.0 + (14.0 - ARC_END) / 20.0
 
@@ -59,7 +59,7 @@ class Contact(unittest.TestCase):
         point = profiles.contact_points(TRACK, WHEELSET)[0]
         gamma = np.arctan(CONE)
         x, y, z = point.place
-        # A place is that of a minimum: good to the root of a rounding of z.
+        # A place is that of a minimum: its error is the square root of the round-off of z.
         self.assertAlmostEqual(point.angle, gamma, delta=1e-5 / HEAD)
         self.assertAlmostEqual(x, 0.0, delta=1e-5)
         self.assertAlmostEqual(y, MIDDLE - HEAD * np.sin(gamma), delta=1e-5)
@@ -67,7 +67,7 @@ class Contact(unittest.TestCase):
         self.assertEqual(WHEELSET.origin, 750.0)
         radius = RADIUS - CONE * (y - 750.0)
         self.assertAlmostEqual(point.rolling_radius, radius, delta=1e-6)
-        # The axle is lowered until the wheel stands on that place.
+        # The axle is lowered until the wheel touches at this place.
         self.assertAlmostEqual(point.position.z, z - radius + RADIUS, delta=1e-6)
         self.assertAlmostEqual(point.clearance, 0.0, delta=1e-10)
 
@@ -105,7 +105,7 @@ class Contact(unittest.TestCase):
         x, y, z = places[0], places[1] + position.y, places[2] - RADIUS
         clearance = HEAD - np.sqrt(np.maximum(HEAD**2 - (y - MIDDLE) ** 2, 0.0)) - z
         least = clearance.argmin()
-        # The search has steps of 0.05 mm: a place is off by so much, and the clearance by its square over two radii.
+        # The search has steps of 0.05 mm: the place has this error, and the clearance its square over two radii.
         self.assertAlmostEqual(point.position.z, clearance[least], delta=0.05**2 / (2 * HEAD) + 0.05**2 / (2 * RADIUS))
         self.assertAlmostEqual(point.place[0], x[least], delta=0.3)
         self.assertAlmostEqual(point.place[1], y[least], delta=0.3)
@@ -128,7 +128,7 @@ class Contact(unittest.TestCase):
             self.assertAlmostEqual(profiles.contact_points(TRACK, WHEELSET, stands, side)[0].clearance, 0.0, delta=1e-10)
 
     def test_a_second_place_is_told(self):
-        # Two heads side by side: the tread lies on both.
+        # Two heads side by side, both in contact with the tread.
         y = np.linspace(-36.0, 36.0, 577)
         head = np.where(y < 0, 40.0 - np.sqrt(np.maximum(40.0**2 - (y + 18.0) ** 2, 0.0)), 40.0 - np.sqrt(np.maximum(40.0**2 - (y - 18.0) ** 2, 0.0)))
         plain = rail()
@@ -143,7 +143,7 @@ class Contact(unittest.TestCase):
         self.assertAlmostEqual(both[1].clearance, 0.04, delta=1e-4)
         self.assertAlmostEqual(both[1].place[1] - both[0].place[1], 36.0, delta=0.2)
         self.assertEqual(len(profiles.contact_points(profiles.Track(double), flat)), 1)
-        # A load that reaches the other head is told of it, by an approach of 0.047 mm; a light one is not.
+        # A load that would reach the other head has a warning, by an approach of 0.047 mm; a light one has none.
         with self.assertWarnsRegex(UserWarning, r"also touches the rail 36\.\d mm beside this patch, where it is 0\.04\d* mm farther off"):
             both[0].press(20e3, 0.4, 0.4, **STEEL)
         with self.assertWarnsRegex(UserWarning, r"also touches the rail -3\d\.\d mm beside this patch"):
@@ -173,10 +173,10 @@ class Loaded(unittest.TestCase):
         radius = (0.75 * force * RADIUS / e_star) ** (1 / 3)
         gap, result = point.press(force, 0.1 * radius, 0.1 * radius, **STEEL)
         self.assertEqual(result.status, cn.OK)
-        # With 10 elements to a radius approach and pressure are good to the square of an element.
+        # With 10 elements per radius the errors of approach and pressure are the square of an element.
         self.assertAlmostEqual(result.approach / (radius**2 / RADIUS), 1.0, delta=0.01)
         self.assertAlmostEqual(result.max_pressure / (1.5 * force / (np.pi * radius**2)), 1.0, delta=0.01)
-        # Nothing that is nearer than the approach was left out.
+        # No place that is nearer than the approach is left out.
         border = np.concatenate([gap.h[[0, -1]].ravel(), gap.h[:, [0, -1]].ravel()])
         self.assertGreater(border.min(), result.approach)
         self.assertEqual(result.warnings, ())
@@ -189,10 +189,10 @@ class Loaded(unittest.TestCase):
         (gap, result), (other_gap, other) = (point.press(10e3, 0.3, 0.3, **STEEL) for point in (touching, overlapping))
         self.assertEqual(gap.h.shape, other_gap.h.shape)
         self.assertAlmostEqual(other_gap.h.min(), -0.02, delta=1e-6)
-        # A cylinder that is lowered by 0.02 mm on 460 mm has the same shape to 5e-5.
+        # A cylinder of 460 mm that is lowered by 0.02 mm has the same shape to 5e-5.
         self.assertAlmostEqual(other.max_pressure / result.max_pressure, 1.0, delta=2e-4)
         self.assertAlmostEqual(other.approach + 0.02, result.approach, delta=1e-5)
-        # By position: no further approach is the overlap.
+        # By position: a further approach of 0 is the overlap itself.
         by_position = overlapping.gap(0.3, 0.3, 0.02).solve(approach=0.0, **STEEL)
         by_approach = touching.gap(0.3, 0.3, 0.02).solve(approach=0.02, **STEEL)
         self.assertAlmostEqual(by_position.force / by_approach.force, 1.0, delta=1e-3)
@@ -240,7 +240,7 @@ class Loaded(unittest.TestCase):
             seconds = np.array(given)
             self.assertGreater(len(given), 1)
             self.assertLess(np.diff(seconds).max(), -0.009)
-            # Without time a complete solve is kept, on a grid that is too small, or too large, or without friction.
+            # Without time left the last complete solve is the result, on a grid that is too small or too large, or without friction.
             approach = 0.02111
             for depth, friction, why in ((0.5 * approach, None, "on a grid for an approach of 0.0106 mm; the approach is 0.02"),
                                          (2.0 * approach, None, "on a grid for an approach of 0.0422 mm; the approach is 0.0211 mm"),
@@ -277,7 +277,7 @@ class Loaded(unittest.TestCase):
             point.gap(0.1, 0.1, 0.0)
 
     def test_a_wheel_that_turns_fast_is_pushed_forward(self):
-        # Of two arcs, near the place where they meet: the middle of the patch is not the contact point.
+        # The point is on two arcs, near their common end: the middle of the patch is not the contact point.
         point = profiles.contact_points(profiles.Track(rail(inner=80.0)), profiles.Wheelset(wheel(1.0 / 200.0)))[0]
         free = 30e3 / point.rolling_radius
         xi, eta, phi = point.creepages(30e3, pitch_rate=1.001 * free)
@@ -291,13 +291,13 @@ class Loaded(unittest.TestCase):
         c, s = np.cos(point.angle), np.sin(point.angle)
         self.assertAlmostEqual(right, c * fy - s * 10e3, delta=1e-6)
         self.assertAlmostEqual(down, -s * fy - c * 10e3, delta=1e-6)
-        # The spin is about the contact point, wherever the middle of the grid is.
+        # The spin is about the contact point, not about the middle of the grid.
         again = gap.solve(force=10e3, friction={**friction, "spin_centre": (-gap.middle[0], -gap.middle[1])}, **STEEL)
         self.assertEqual(again.tangential_force, result.tangential_force)
-        # On the left side the same force, mirrored.
+        # The left side has the mirrored force.
         left = profiles.contact_points(profiles.Track(rail(inner=80.0)), profiles.Wheelset(wheel(1.0 / 200.0)), side="left")[0]
         self.assertEqual(left.force_on_wheel(result), (forward, -right, down))
-        # Places are those of the gap, around the contact point.
+        # Places are those of the gap, relative to the contact point.
         self.assertNotEqual(gap.middle[1], 0.0)
         np.testing.assert_array_equal(result.y, gap.y)
         self.assertLess(np.abs(gap.y).min(), 1e-9)
@@ -324,7 +324,7 @@ class Creepages(unittest.TestCase):
             stands, sign = point.position, 1.0 if side == "right" else -1.0
 
             def moved(place, time):
-                """Where a material point of the wheel that is at `place` now will be."""
+                """The later place of the material point of the wheel that is at `place` now."""
                 axle = np.array([0.0, stands.y, stands.z - RADIUS])
                 body = rotation(stands.roll, stands.yaw).T @ (np.asarray(place) - axle)
                 c, s = np.cos(pitch_rate * time), np.sin(pitch_rate * time)
@@ -338,7 +338,7 @@ class Creepages(unittest.TestCase):
             along = np.array([0.0, sign * c, -s])
             found = point.creepages(speed, pitch_rate=pitch_rate, yaw_rate=yaw_rate, roll_rate=roll_rate, lateral_speed=lateral, vertical_speed=down)
             here = velocity(point.place)
-            # Differences over 2e-6 s: 1e-16 times 1 m over that, and (rate 1e-6 s)^2 of the speed.
+            # Differences over 2e-6 s: the errors are 1e-16 times 1 m over that, and (rate 1e-6 s)^2 of the speed.
             self.assertAlmostEqual(found[0], here[0] / speed, delta=1e-7)
             self.assertAlmostEqual(found[1], here @ along / speed, delta=1e-7)
             ahead, aside = (velocity(np.asarray(point.place) + move) for move in (np.array([1.0, 0.0, 0.0]), along))

@@ -1,4 +1,4 @@
-"""What results say of themselves: numbers, coordinates, units; moduli and loads of other kinds; stresses and tangential problems."""
+"""Contents of results: values, coordinates, units; other kinds of moduli and loads; stresses and tangential problems."""
 
 import io
 import unittest
@@ -17,7 +17,7 @@ STEEL = {"shear_modulus": G, "poisson_ratio": NU}
 MY, MX, DX, DY = 20, 26, 0.1, 0.12
 X = (np.arange(MX) - 0.5 * (MX - 1)) * DX
 Y = (np.arange(MY) - 0.5 * (MY - 1)) * DY
-# The deepest place is off the middle.
+# The lowest place is off the middle.
 H = 0.02 * ((X[None, :] - 0.3) ** 2 + 2 * (Y[:, None] + 0.2) ** 2)
 
 
@@ -46,7 +46,7 @@ class Numbers(unittest.TestCase):
         self.assertEqual(sorted(keys), sorted(set(keys)))
         found = solve(method="MULTIGRID", friction={"coefficient": 0.3, "force": (10.0, -5.0)})
         self.assertEqual(sorted(found.report), sorted(keys))
-        # That of the pressures, not that of the tractions, and not 0 where there are none.
+        # The update is that of the pressures, not that of the tractions, and not 0 without pressures.
         self.assertEqual(found.report["update"], found._report.normal.update)
         self.assertEqual(found.report["tangential_update"], found._report.tangential.update)
         self.assertGreater(solve(method="MULTIGRID").report["update"], 0.0)
@@ -184,7 +184,7 @@ class Stresses(unittest.TestCase):
             np.testing.assert_array_equal(own.von_mises, all_of_it.von_mises)
             self.assertEqual(own.largest_von_mises, all_of_it.largest_von_mises)
             self.assertTrue(own.xx is None and own.maximum_shear is None and own.largest_shear == {} and own.principal is None)
-            # The same at points, whose x and y are those of the result.
+            # Stresses at points, whose x and y are those of the result, are equal.
             points = [(x, y, z) for z in depths for y in found.y[5:8] for x in found.x[4:9]]
             at = cn.stress_at_points(found.pressure, DX, DY, points, poisson_ratio=NU, traction=traction, body=body)
             tensor = np.stack([getattr(all_of_it, name)[:, 5:8, 4:9].ravel() for name in ("xx", "yy", "zz", "xy", "xz", "yz")], axis=1)
@@ -211,10 +211,10 @@ class Stresses(unittest.TestCase):
         self.assertEqual(cn.stress_at_points(p, DX, DY, np.zeros((0, 3)), poisson_ratio=NU).shape, (0, 6))
 
     def test_coating_compliance(self):
-        # A coating of the body's own material is none: (1 - nu)/(G k).
+        # A coating of the body's own material has no effect: (1 - nu)/(G k).
         waves = np.array([[0.1, 1.0], [10.0, 1e4]])
         np.testing.assert_allclose(cn.coating_compliance(0.2, G, NU, waves, below=(G, NU)), (1 - NU) / (G * waves), rtol=1e-12)
-        # Deep below short waves only the coating is felt, by long ones only the body.
+        # Short waves depend on the coating only, long ones on the substrate only.
         found = cn.coating_compliance(0.2, 4 * G, NU, [1e-5, 1e5], below=(G, NU)) * [1e-5, 1e5]
         np.testing.assert_allclose(found, [(1 - NU) / G, (1 - NU) / (4 * G)], rtol=1e-4)
         self.assertEqual(cn.coating_compliance(0.2, G, NU, 1.0, below=(G, NU)).shape, ())
@@ -256,13 +256,13 @@ class Limits(unittest.TestCase):
             self.assertIn(name, found.message)
             rows = cn.cost_of_accuracy(lambda x, y: 0.02 * (x * x + y * y), DX, DY, shape=(32, 32), force=100.0, **{name: 1000}, **STEEL)
             self.assertEqual(rows[-1].obstacle, obstacle)
-        # None given: 4096 x 4096 elements, as the docstrings say.
+        # Without a limit: 4096 x 4096 elements, as the docstrings say.
         for function in (cn.solve_to_accuracy, cn.cost_of_accuracy):
             self.assertRegex(function.__doc__, r"max_elements : int\n.*0: 4096 x 4096\.")
 
     def test_targets(self):
         for name in ("max_pressure_target", "contact_area_target"):
-            # 7 % is 0.07.
+            # The relative error of 7 % is 0.07.
             with self.assertRaisesRegex(ValueError, f"{name} is 7; .* 1 % is 0.01"):
                 cn.solve_to_accuracy(H, DX, DY, force=100.0, **{name: 7.0}, **STEEL)
             with self.assertRaisesRegex(cn.ContactNormalError, name):
@@ -310,7 +310,7 @@ class Bars(unittest.TestCase):
         def told(m, residual, cycles=1):
             return cn.Progress(m, m, cycles, 0, 1.0, 1.0, 0.0, residual)
 
-        # Of one grid; of grids that are not known beforehand; of entries.
+        # Bars for one grid; for grids that are not known beforehand; for entries.
         for bar, steps in ((SolveBar(64 * 64, 1e-6), [(32, 1e-5), (64, 1e-3), (64, 1e-2), (64, 1e-5), (64, np.nan)]),
                            (SolveBar(None, 1e-6), [(16, 1e-3), (16, 1e-7), (32, 0.5), (32, 1e-3), (16, 1e-1), (64, 0.9), (64, 1e-6)]),
                            (SolveBar(64 * 64, 1e-6, 10), [(64, 1e-9, 3), (64, 1e-9, 1), (64, 1e-9, 7)])):

@@ -1,4 +1,4 @@
-"""Rollers: their gaps in closed form, and the pressures that their profiles are made for."""
+"""Rollers: their gaps in closed form, and the design pressures of their profiles."""
 
 import pickle
 import unittest
@@ -20,7 +20,7 @@ class Gaps(unittest.TestCase):
         expected = (6.0 - np.sqrt(36.0 - x**2)) - (9.0 - np.sqrt(81.0 - x**2)) + (100.0 - np.sqrt(1e4 - y[:, None] ** 2)) + 1e-3 * y[:, None]
         np.testing.assert_allclose(gap.h, expected, atol=1e-14 * 100)
         self.assertEqual((gap.dx, gap.dy, gap.units), (0.1, 1.0, ("mm", "N")))
-        # No surface beyond a roller.
+        # There is no surface beyond a roller.
         self.assertTrue(np.isinf(rollers.gap((14.0, 1.0), (14, 1), (6.0,)).h[0, [0, -1]]).all())
 
     def test_beyond_a_hollow_there_is_no_surface(self):
@@ -110,9 +110,9 @@ class Pressures(unittest.TestCase):
 
     def test_lundbergs_profile_has_even_pressures(self):
         p = self.along(rollers.logarithmic(LENGTH, self.FORCE, E_STAR))
-        # The middle half is that of Hertz' line; 24 elements to half a width are good to 0.2 %.
+        # The middle half has the pressure of Hertz' line; with 24 elements per half-width the error is 0.2 %.
         np.testing.assert_allclose(p[14:42], self.LINE, rtol=2e-3)
-        # Nowhere more than a few per cent, but for the last two rows, where the drop has no bound.
+        # The excess is at most a few per cent, except in the last two rows, where the drop is unbounded.
         self.assertLess(p.max() / self.LINE, 1.03)
 
     def test_moduli_of_another_system_of_units_are_told(self):
@@ -132,7 +132,7 @@ class Pressures(unittest.TestCase):
             rollers.crown(LENGTH, 1.0, 8.0)
         with self.assertWarnsRegex(UserWarning, r"the drop at the ends is -0\.00\S+ beside the middle: it is positive where the roller is thinner"):
             rollers.gap((1.2, LENGTH), (48, 56), RADII, drop=lambda y: -0.005 * (y / 7.0) ** 2)
-        # A force in kN, and E* in Pa, beside mm.
+        # A force in kN, or E* in Pa, with lengths in mm.
         for force, e_star in ((9.0, E_STAR), (9000.0, 1e6 * E_STAR)):
             with self.assertWarnsRegex(UserWarning, "must be in one system of units"):
                 rollers.logarithmic(LENGTH, force, e_star)
@@ -141,7 +141,7 @@ class Pressures(unittest.TestCase):
             rollers.gap((1.2, LENGTH), (48, 56), RADII, drop=log)
             rollers.gap((1.2, 20.0), (48, 80), RADII, drop=log, tilt=1e-3)
             rollers.gap((1.2, LENGTH), (48, 56), RADII, drop=[log, rollers.no_drop(40.0)])
-            # The contact of a ball is far from the ends of its crown.
+            # The contact of a ball is far from the ends of the crown.
             rollers.gap((0.6, 0.6), (60, 60), (8.0,), drop=rollers.crown(16.0, 8.0))
 
     def test_sharp_ends_and_crowns_do_not(self):
@@ -153,10 +153,10 @@ class Pressures(unittest.TestCase):
 
     def test_a_crowned_contact_is_that_of_hertz(self):
         gap = rollers.gap((0.6, 0.6), (60, 60), (8.0, -24.0), crown_radii=(12.0,))
-        # 1/8 - 1/24 = 1/12: a ball of 12 mm.
+        # 1/8 - 1/24 = 1/12: equivalent to a ball of 12 mm.
         radius = 0.2
         force = radius**3 / 12.0 * E_STAR / 0.75
         result = gap.solve(force=force, e_star=E_STAR)
-        # 20 elements to a radius, and circles that are parabolas to (0.2/8)^2/4.
+        # With 20 elements per radius, and circles that are parabolas to (0.2/8)^2/4.
         self.assertAlmostEqual(result.max_pressure / (1.5 * force / (np.pi * radius**2)), 1.0, delta=5e-3)
         self.assertAlmostEqual(result.approach / (radius**2 / 12.0), 1.0, delta=5e-3)

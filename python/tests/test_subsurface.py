@@ -1,4 +1,4 @@
-"""Stresses below the surface and coatings, as Python has them."""
+"""Stresses below the surface and coatings in Python."""
 
 import pickle
 import unittest
@@ -21,7 +21,7 @@ class Subsurface(unittest.TestCase):
         depths = np.linspace(0.0, 1.5, 61)
         stress = result.subsurface(depths, principal=True)
         np.testing.assert_allclose(stress.zz[0], -result.pressure, atol=1e-12 * p0)
-        # The largest shear is .310 p0 at .48 a (Johnson, section 4.2); some 18 elements to the radius: .1 % of it.
+        # The largest shear is .310 p0 at .48 a (Johnson, section 4.2); with some 18 elements per radius the error is .1 %.
         a = cn.hertz(0.01, 0.01, force=1000.0, **STEEL).semi_axis_x
         self.assertAlmostEqual(stress.largest_shear["value"] / p0, 0.310, delta=1e-3)
         self.assertAlmostEqual(stress.largest_shear["z"] / a, 0.48, delta=0.03)
@@ -69,7 +69,7 @@ class Subsurface(unittest.TestCase):
                                     period="xy", **given)
         # Each plane carries the mean pressure.
         np.testing.assert_allclose(wavy.subsurface([0.5, 1.6], components=["zz"]).zz.mean(axis=(1, 2)), -0.02, rtol=1e-6)
-        # Two balls on patches that do not know of each other: none of the pressure on the right is felt on the left.
+        # Two balls on independent patches: pressures on the right have no effect on the left.
         patch = np.where(np.arange(16) < 8, 0, 1) + np.zeros((16, 1), dtype=int)
         balls = cn.solve_to_accuracy(lambda x, y: (np.abs(x) - 0.8) ** 2 + y**2, 0.2, 0.2, patches=(patch, np.eye(2)), **given)
         left = np.where(balls.x < 0.0, balls.pressure, 0.0)
@@ -88,7 +88,7 @@ class Subsurface(unittest.TestCase):
         listed = cn.solve(H, D, D, force=1000.0, patches=(lists := [patch.tolist(), factors.tolist()]), shear_modulus=82000.0, poisson_ratio=nu)
         of_solver = solver.solve(H, force=1000.0)
         before = [result.subsurface([0.3]).von_mises for result in (layered, patched, listed, of_solver)]
-        # Stresses are first asked for after the change.
+        # Stresses are first computed after the change.
         unasked = cn.solve(H, D, D, force=1000.0, patches=(patch, factors), **STEEL)
         patch[:], factors[:], layer[:], limit[:] = 0, 1.0, -1.0, -1.0
         lists[1][0][1], nu[:] = 0.0, (0.0, 0.0)
@@ -102,7 +102,7 @@ class Subsurface(unittest.TestCase):
         with cn.Solver(m, m, D, D, influence=table, **bodies) as solver:
             found = solver.solve(h, force=1.0)
         for result in (found, pickle.loads(pickle.dumps(found)), cn.solve(h, D, D, force=1.0, influence=table, **bodies)):
-            # Its pressures are more than E*/5 of a half-space that there is not.
+            # The half-space of the elastic constants is not used, so that pressures above E*/5 have no warning.
             self.assertEqual(result.warnings, ())
             for call in (lambda: result.subsurface([0.1]), lambda: result.stress_at_points([(0.0, 0.0, 0.1)])):
                 with self.assertRaisesRegex(cn.ContactNormalError, "influence is given; subsurface stresses are those of a half-space"):

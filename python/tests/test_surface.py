@@ -1,4 +1,4 @@
-"""From heights to a gap: each step against a known result, and the effect of mistakes."""
+"""From heights to a gap: each step compared with a known result, and the effect of mistakes."""
 
 import time
 import unittest
@@ -17,7 +17,7 @@ Y = (np.arange(MY) - 0.5 * (MY - 1)) * DY
 
 
 def rough(n=64, seed=1):
-    """A self-affine surface with the grid as its period, of a root mean square of 1."""
+    """A self-affine surface with the grid as its period, and an rms of 1."""
     rng = np.random.default_rng(seed)
     waves = np.fft.fftfreq(n) * n
     k = np.hypot(waves[:, None], waves[None, :])
@@ -54,7 +54,7 @@ class Arrays(unittest.TestCase):
         falling = surface.heights(self.Z, x=[2.5, 2.0, 1.5, 1.0], y=[4.0, 2.0, 0.0])
         np.testing.assert_array_equal(falling.z, self.Z[::-1, ::-1])
         self.assertEqual((falling.dx, falling.dy), (0.5, 2.0))
-        # A falling y and top_first say the same: rows are turned once.
+        # Decreasing y and top_first have the same meaning: rows are reversed once.
         twice = surface.heights(self.Z, x=[1.0, 1.5, 2.0, 2.5], y=[4.0, 2.0, 0.0], top_first=True)
         np.testing.assert_array_equal(twice.z, self.Z[::-1])
         with self.assertRaisesRegex(ValueError, "y has one place, which tells no spacing: give dx and dy"):
@@ -148,7 +148,7 @@ class Faults(unittest.TestCase):
             surface.gap(plain)
 
     def test_what_is_measured_is_no_fault(self):
-        # A flat plateau at the top, a bump, heights of an 8-bit instrument.
+        # A plateau at the top, a bump, heights of an 8-bit instrument.
         for z in (np.minimum(rough(), 1.0), rough() + np.where(np.hypot(*np.mgrid[-32:32, -32:32]) < 9, 3.0, 0.0), np.round(8 * rough())):
             found = surface.faults(surface.heights(z, 1, 1))
             self.assertEqual(found.fill_values, ())
@@ -203,7 +203,7 @@ class Faults(unittest.TestCase):
         z[30:50, 40:70] = np.nan
         made = surface.heights(z, 1, 1)
         self.assertEqual(surface.faults(made).spikes.sum(), 0)
-        # Spikes are found there, and inside nothing else is. At an edge the two neighbours along it may be marked too: one of their five is it.
+        # Only the spikes are found inside. At an edge the two neighbours along it may also be marked, because the spike is one of their five neighbours.
         for place, most in (((20, 20), 1), ((0, 60), 3), ((99, 3), 3), ((40, 39), 3), ((50, 55), 3), ((0, 0), 3)):
             spoiled = made.z.copy()
             spoiled[place] += 4.0
@@ -302,7 +302,7 @@ class Gaps(unittest.TestCase):
             expected = -(one + seen)
             expected -= np.nanmin(expected)
             np.testing.assert_array_equal(surface.gap(lower, upper, turned=turned).h, np.where(np.isnan(expected), np.inf, expected))
-        # A print of a surface, turned over, fits everywhere.
+        # A replica of a surface, turned over, fits everywhere.
         print_of = surface.heights(-one[:, ::-1], DX, DY)
         np.testing.assert_allclose(surface.gap(lower, print_of).h, 0.0, atol=1e-14)
         with self.assertRaisesRegex(ValueError, "grids must be equal"):
@@ -338,11 +338,11 @@ class Balance(unittest.TestCase):
         self.assertLess(np.abs(found.centre).max(), 1e-5 * n * d)
         upright = (x[None, :] ** 2 + x[:, None] ** 2) / (2 * radius)
         np.testing.assert_allclose(found.gap.h, upright, atol=1e-5 * (n * d) ** 2 / radius)
-        # Also a tilt in one direction.
+        # Also for a tilt in one direction.
         for one in ((tilt[0], 0.0), (0.0, tilt[1])):
             found = surface.balance(surface.Gap(upright + one[0] * x[None, :] + one[1] * x[:, None], d, d), 2e-2, tolerance=1e-5, e_star=1.0)
             np.testing.assert_allclose(found.tilt, one, atol=1e-5 * n * d / radius)
-        # A force beside the middle tilts the ball.
+        # A force off the middle tilts the ball.
         beside = surface.balance(surface.Gap(h, d, d), 2e-2, at=(0.1, 0.05), tolerance=1e-5, e_star=1.0)
         np.testing.assert_allclose(beside.tilt, (tilt[0] + 0.1 / radius, tilt[1] + 0.05 / radius), atol=1e-5 * n * d / radius)
 

@@ -9,7 +9,7 @@ from contact_normal import surface
 
 
 def rough(shape, period="xy", seed=1):
-    """A self-affine surface with the grid as its period, of a root mean square of 1."""
+    """A self-affine surface with the grid as its period, and an rms of 1."""
     rng = np.random.default_rng(seed)
     k = np.hypot(*np.meshgrid(*(np.fft.fftfreq(n) * max(shape) for n in shape), indexing="ij"))
     amplitudes = np.where((k >= 2) & (k <= max(shape) / 8), np.maximum(k, 1.0) ** -1.8, 0.0)
@@ -138,7 +138,7 @@ class Plateaus(unittest.TestCase):
         self.assertEqual(spikes(z), [])
         z[3, 4], z[0, 31] = 1e-3, -2.0
         self.assertEqual(spikes(z), [[0, 31], [3, 4]])
-        # Two levels are a pattern: islands of one element or of some.
+        # Two levels are a pattern: islands of one or several elements.
         z = np.zeros((32, 32))
         z[::4, ::4] = 1.0
         self.assertEqual(spikes(z), [])

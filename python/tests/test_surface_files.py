@@ -19,7 +19,7 @@ from matplotlib import pyplot  # noqa: E402
 
 
 class DataArray:
-    """What the reader asks an xarray.DataArray for."""
+    """The members of an xarray.DataArray that the reader uses."""
 
     def __init__(self, values, dims, unit, of_coordinates):
         self.values, self.dims, self.attrs = values, dims, {"units": unit} if unit else {}
@@ -34,7 +34,7 @@ class DataArray:
 
 
 def instruments(topography, **channels):
-    """In place of SurfaceTopography: a reader whose topography is made by a function, and has channels of these shapes."""
+    """Replaces SurfaceTopography: a reader whose topography is made by a function, with channels of these shapes."""
     named = [SimpleNamespace(name=name, dim=2, nb_grid_pts=shape) for name, shape in (channels or {"height": (5, 16)}).items()]
     reader = mock.MagicMock(channels=named, default_channel=named[0], topography=topography)
     reader.__enter__.return_value = reader
@@ -77,7 +77,7 @@ class Files(unittest.TestCase):
                 surface.read(self.folder / "a.txt")
         (self.folder / "a.txt").write_text(head.format(point=".", unit="\u212b", value="\u00c5") + rows, encoding="utf-8")
         self.assertEqual(surface.read(self.folder / "a.txt").units, ("\u00c5", "N"))
-        # A character that is cut where the reader stops is no reason for another encoding.
+        # A character that is cut at the end of the read part must not change the encoding.
         for more in range(4):
             (self.folder / "a.txt").write_bytes((head.format(point=".", unit="\u00b5m", value="m") + "# " + "x" * more + "\u20ac" * 2000 + "\n" + rows).encode())
             self.assertAlmostEqual(surface.read(self.folder / "a.txt").dy, 5e-6 / 32, delta=1e-18)
@@ -116,7 +116,7 @@ class Files(unittest.TestCase):
                 (self.folder / "a.txt").write_text("\n".join(rows))
                 made = surface.read(self.folder / "a.txt", size=(16.0, 5.0))
                 np.testing.assert_array_equal(made.z, np.where(holes, np.nan, z))
-        # Rows without any, a line with one tab more, and files that SurfaceTopography would read with other columns.
+        # Rows without values, a line with one more tab, and files that SurfaceTopography would read with other columns.
         holes = (np.arange(16) == 6) | (np.arange(5)[:, None] == 2)
         rows = ["\t".join("" if hole else f"{value:.17g}" for value, hole in zip(*row)) for row in zip(z, holes)]
         rows[3] += "\t"
@@ -124,14 +124,14 @@ class Files(unittest.TestCase):
             (self.folder / name).write_text("\r\n".join(rows))
             made = surface.read(self.folder / name, size=(16.0, 5.0))
             np.testing.assert_array_equal(made.z, np.where(holes, np.nan, z))
-        # A cell of blanks is empty; beside other holes so is the first one of all lines.
+        # A cell of blanks is empty; with other holes the first cell of all lines may be empty, too.
         for holes, cell in ((np.arange(16) == 6 + 0 * z, " "), ((np.arange(16) == 0) | (np.arange(16)[None] == 3 + np.arange(5)[:, None]), "")):
             rows = ["\t".join(cell if hole else f"{value:.17g}" for value, hole in zip(*row)) for row in zip(z, holes)]
             (self.folder / "a.txt").write_text("\n".join(rows))
             with self.assertWarnsRegex(UserWarning, "has no number: a column of holes"):
                 made = surface.read(self.folder / "a.txt", size=(16.0, 5.0))
             np.testing.assert_array_equal(made.z, np.where(holes, np.nan, z))
-        # Tabs that line up columns, or begin all lines, are no empty cells.
+        # Tabs that align columns, or begin all lines, are no empty cells.
         for begin, between in (("", "\t\t"), ("\t", "\t"), ("\t", " \t\t ")):
             (self.folder / "a.txt").write_text("\n".join(begin + between.join(f"{value:.17g}" for value in row) for row in z))
             np.testing.assert_array_equal(surface.read(self.folder / "a.txt", dx=1.0, dy=1.0).z, z)
@@ -173,7 +173,7 @@ class Files(unittest.TestCase):
             surface.from_xarray(array("um", "mm"))
         with self.assertRaisesRegex(ValueError, "lengths are in mm in the file"):
             surface.from_xarray(array("mm", "mm"), units=("m", "N"))
-        # Words of NetCDF's conventions.
+        # Words of the NetCDF conventions.
         self.assertEqual(surface.from_xarray(array("micrometers", "\u00b5m")).units, ("micrometers", "N"))
         for one, other in (("meter", "m"), ("Metres", "m"), ("microns", "um"), ("millimetre", "mm"), ("nanometers", "nm")):
             surface.from_xarray(array(one, other))
@@ -266,7 +266,7 @@ class Files(unittest.TestCase):
             ("both", np.block([[np.zeros((1, 1)), np.arange(12)[None] * 0.5], [np.arange(12)[:, None] * 0.3, heights]]), "line"),
             ("a line", np.vstack([np.arange(12) * 0.5, heights]), "line"), ("a column", np.column_stack([np.arange(12), heights]), "column"),
         ):
-            # The step of the line in its unit or in another one, by the size of an element or of the field.
+            # The step of the line in its unit or in another one, from the size of an element or of the field.
             for given in ({"dx": 0.5, "dy": 0.1}, {"dx": 5e-4, "dy": 0.1}, {"size": (6.0, 6.0)}, {"span": (5.5, 5.5)}):
                 with self.subTest(name, given=given):
                     np.savetxt(self.folder / "table.txt", table)
@@ -281,14 +281,14 @@ class Files(unittest.TestCase):
         for wrong in (10.0, None, (10.0,)):
             with self.assertRaisesRegex((TypeError, ValueError), "two numbers|in one way"):
                 surface.read(self.folder / "plain.txt", size=wrong)
-        # No coordinates: the step has nothing of the size of an element.
+        # These are no coordinates: the step is unrelated to the size of an element.
         far = np.vstack([0.0137 * np.arange(12) + 40.0, heights])
         np.savetxt(self.folder / "far.txt", far)
         with self.assertWarnsRegex(UserWarning, "a straight first line, which is read as heights"):
             self.assertEqual(surface.read(self.folder / "far.txt", dx=0.5, dy=0.5).z.shape, far.shape)
         with self.assertRaisesRegex(ValueError, "has coordinates in its first line"):
             surface.read(self.folder / "far.txt", x=np.arange(12), y=np.arange(13))
-        # A broken line of a scan is straight once the map is levelled.
+        # A faulty line of a scan is straight after the map is levelled.
         broken = heights.copy()
         broken[0] = np.linspace(-0.31, 0.42, heights.shape[1]) * np.ptp(heights)
         np.savetxt(self.folder / "broken.txt", broken)
@@ -377,7 +377,7 @@ class Files(unittest.TestCase):
         np.testing.assert_array_equal(made.z, z.T)
         self.assertEqual((made.dx, made.dy, made.period, made.units), (1.0 / 5, 2.0 / 16, "xy", ("um", "N")))
         self.assertIsNone(surface.from_topography(topography, period=None).period)
-        # Lengths stay with their indices.
+        # Lengths belong to their indices.
         turned = surface.from_topography(topography, axes="yx")
         np.testing.assert_array_equal(turned.z, z)
         self.assertEqual((turned.dx, turned.dy), (2.0 / 16, 1.0 / 5))
@@ -414,7 +414,7 @@ class Files(unittest.TestCase):
             read = surface.read(self.folder / "a.mat", "Z", dx=0.5, dy=0.25)
             np.testing.assert_array_equal(read.z, z)
             self.assertEqual(surface.read(self.folder / "a.mat", "Z", dx=0.5, dy=0.25, axes="xy").z.shape, (16, 5))
-            # An instrument's first one is the heights.
+            # The first array of an instrument's file has the heights.
             np.testing.assert_array_equal(surface.read(self.folder / "a.gwy", "Z").z, z.T)
         with instruments(lambda channel_index: made, forward=(5, 16), backward=(5, 16)):
             with self.assertWarnsRegex(UserWarning, "a.gwy has forward, backward; forward is read: variable= names another one"):
@@ -427,11 +427,11 @@ class Files(unittest.TestCase):
         z = DataArray(np.eye(4), ("y", "x"), "mm", "mm")
 
         def series(count):
-            """Maps at so many times."""
+            """Maps at several times."""
             sizes = {"t": count, "y": 4, "x": 4}
             return SimpleNamespace(dims=tuple(sizes), sizes=sizes, shape=(count, 4, 4), ndim=3, squeeze=lambda *_, **__: z)
 
-        # One map of a series is a map.
+        # A series of one map is a map.
         self.assertEqual(surface.from_xarray(series(1)).z.shape, (4, 4))
         with self.assertRaisesRegex(ValueError, "heights have two: choose one map by isel"):
             surface.from_xarray(series(2))

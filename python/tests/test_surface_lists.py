@@ -38,7 +38,7 @@ class Lists(unittest.TestCase):
             warnings.simplefilter("error")
             for columns in ((x, y, z), (x[order], y[order], z[order]), (z[order], x[order], y[order]), (np.arange(63.0), x, y, z)):
                 self.assert_grid(self.read(*columns))
-            # The heights of a plane are evenly spaced, too, but are no coordinates.
+            # The heights of a plane are also evenly spaced, but are no coordinates.
             np.testing.assert_allclose(self.read(x, y, 0.1 * x).z, np.tile(0.1 * self.x, (7, 1)))
         self.path = self.path.with_suffix(".xyz")
         self.assert_grid(self.read(*(one[order] for one in (x, y, z))))
@@ -149,11 +149,11 @@ class Units(unittest.TestCase):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             surface.heights(nanometres, size=(5e3, 5e3))
-            # A flat of a twentieth of a wave length, with noise of .5 nm, in mm; and an exact plane.
+            # A plane of a twentieth of a wavelength, with noise of .5 nm, in mm; and an exact plane.
             x = np.linspace(-1.0, 1.0, 64)
             surface.heights(25e-6 * x[None, :] ** 2 + 1e-7 * nanometres, size=(100.0, 100.0))
             surface.heights(np.zeros((64, 64)), size=(100.0, 100.0))
-            # A fifth of the elements is a fill value.
+            # A fifth of the elements has a fill value.
             surface.heights(np.where(np.arange(64) % 5 == 0, -9999.0, nanometres), size=(5e3, 5e3))
 
 

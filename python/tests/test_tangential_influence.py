@@ -1,4 +1,4 @@
-"""Tangential coefficients of the caller's own, as Python has them."""
+"""The caller's own tangential coefficients in Python."""
 
 import unittest
 
@@ -13,7 +13,7 @@ BODIES = {"shear_modulus": 1.0, "poisson_ratio": 0.0}
 
 
 def corner_differences(function):
-    """Of `function(x, y)` over the corners of an element, at the offsets -M..M-1 in both directions."""
+    """Differences of `function(x, y)` over the corners of an element, at the offsets -M..M-1 in both directions."""
     y, x = np.meshgrid((np.arange(2 * M) - M) * D, (np.arange(2 * M) - M) * D, indexing="ij")
     corners = ((1, 1, 1), (-1, 1, -1), (1, -1, -1), (-1, -1, 1))
     return sum(sign * function(x + i * D / 2, y + j * D / 2) for i, j, sign in corners)
@@ -26,11 +26,11 @@ class TangentialInfluence(unittest.TestCase):
         none = np.zeros_like(both)
         friction = {"coefficient": 0.3, "creepage": (-0.004, 0.001)}
         known = cn.solve(H, D, D, force=0.05, friction=friction, **BODIES)
-        # Bodies of G = 1: 1/G = (1 + 1)/2 = 1.
+        # Bodies with G = 1: 1/G = (1 + 1)/2 = 1.
         for influence in ((both, both, none), (4 * both, 4 * both, none, 0.25)):
             found = cn.solve(H, D, D, force=0.05, friction={**friction, "influence": influence}, **BODIES)
             self.assertEqual(found.status, cn.OK)
-            # Round-off of the corner differences, some 1e-13, and what a residual of 1e-6 hides.
+            # Round-off of the corner differences, some 1e-13, and the error with a residual of 1e-6.
             np.testing.assert_allclose(found.traction, known.traction, atol=1e-4 * np.abs(known.traction).max())
             self.assertGreater(np.count_nonzero(found.stick_slip == 1), 0)
 
@@ -64,11 +64,11 @@ class TangentialInfluence(unittest.TestCase):
         both = corner_differences(lambda x, y: x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))) / np.pi
         entries = [(-0.004, 0.001, 0.0), (0.002, 0.0, 0.001)]
         known = cn.friction_batch(H, D, D, entries, force=0.05, friction={"coefficient": 0.3}, **BODIES)
-        # Bodies that are not read: 1/G is in the tables.
+        # The bodies are not read: 1/G is in the tables.
         found = cn.friction_batch(H, D, D, entries, force=0.05, influence=both, shear_modulus=7.0, poisson_ratio=0.2,
                                   friction={"coefficient": 0.3, "influence": (both, both, np.zeros_like(both))})
         np.testing.assert_array_equal(found.status, cn.OK)
-        # What residuals of 1e-6 leave of the forces.
+        # The errors of forces with residuals of 1e-6.
         np.testing.assert_allclose(found.force, known.force, atol=1e-5 * np.abs(known.force).max())
 
     def test_tables_per_row_of_a_half_space_give_its_tractions(self):
@@ -79,12 +79,12 @@ class TangentialInfluence(unittest.TestCase):
         for tables in ((rows, rows, 0 * rows), (4 * rows, 4 * rows, 0 * rows, 0.25)):
             found = cn.solve(H, D, D, force=0.05, friction={**friction, "row_tables": tables}, **BODIES)
             self.assertEqual(found.status, cn.OK)
-            # Round-off of the corner differences, some 1e-13, and what a residual of 1e-6 hides.
+            # Round-off of the corner differences, some 1e-13, and the error with a residual of 1e-6.
             np.testing.assert_allclose(found.traction, known.traction, atol=1e-4 * np.abs(known.traction).max())
         with cn.Solver(M, M, D, D, friction={"row_tables": (rows, rows, 0 * rows)}, **BODIES) as solver:
             solver.set_influence(friction={"row_tables": (2 * rows, 2 * rows, 0 * rows)})
             found = solver.solve(H, force=0.05, friction={"coefficient": 0.3, "force": (0.005, None)})
-            # Twice as soft: half of the stiffness.
+            # Twice the compliance gives half of the stiffness.
             stiff = cn.solve(H, D, D, force=0.05, friction={"coefficient": 0.3, "force": (0.005, None)}, **BODIES)
             self.assertAlmostEqual(found.report["creepage"][0] / stiff.report["creepage"][0], 2, delta=1e-4)
         for tables, words in (((rows, rows), "2 entries"), ((rows, rows, rows[1:]), "shapes")):

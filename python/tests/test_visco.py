@@ -1,4 +1,4 @@
-"""Bodies that relax: a ball on one body of two branches."""
+"""Viscoelastic bodies: a ball on one body with two branches."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Visco(unittest.TestCase):
                 self.assertAlmostEqual(found.report["time"], time, places=12)
                 self.assertLess(abs(found.force / first.force / (modulus(time) / 8.0) - 1), 1e-8)
                 self.assertGreater(found.report["time_error"], found.report["step_error"] if k else 0)
-            # Anew, and refused on another handle.
+            # From rest again, and refused on another handle.
             again = solver.solve(H, approach=0.02, visco={"time_step": 0.4})
             self.assertEqual(again.report["time"], 0.4)
 

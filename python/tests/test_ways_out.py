@@ -23,7 +23,7 @@ ROLLING = {"coefficient": 0.3, "motion": "STEADY_ROLLING"}
 
 
 class DecimalCommas(unittest.TestCase):
-    """The same profile, however its numbers are written."""
+    """One profile with its numbers in different formats."""
 
     def test_columns_of_a_profile(self):
         y = np.arange(-40.0, 41.0, 5.0)
@@ -157,7 +157,7 @@ class Texts(unittest.TestCase):
         rows = cn.quantities(H, D, D, names=["force", "mean_gap", "max_von_mises"], force=100.0, coating=((0.1, 4e4, 0.3), None), **STEEL)
         lines = str(rows).splitlines()
         self.assertIn("not with an effect of the scene", lines[3])
-        # Columns of 18, 13, 16, 12 and 12 letters, then the reason for a missing number.
+        # Columns of 18, 13, 16, 12 and 12 letters, then the reason for a missing value.
         self.assertEqual({len(line[:71].rstrip()) for line in lines[:-1]}, {71})
         self.assertEqual(lines[-1], "force is that of the approach: the force is prescribed")
         self.assertNotIn("prescribed", str(cn.quantities(H, D, D, approach=0.01, **STEEL)))

@@ -1,4 +1,4 @@
-"""Quantities with their errors, the bill of effects, what is neglected, and accuracies and prices of scenes with effects."""
+"""Quantities with their errors, the bill of effects, neglected effects, and accuracies and prices of scenes with effects."""
 
 import unittest
 
@@ -21,7 +21,7 @@ class Quantities(unittest.TestCase):
         self.assertEqual([row.shape for row in rows], [(m, m) for m in (16, 32, 64) for _ in truth])
         for name, value in truth.items():
             row = rows.last(name)
-            # An estimate from one grid is a third of the error at least.
+            # The error is at most three times an estimate from one grid.
             self.assertLessEqual(abs(row.value - value), 3 * row.error, row)
             self.assertEqual(row.lack, "")
         self.assertEqual(rows[1].lack, "one grid")
@@ -57,7 +57,7 @@ class Quantities(unittest.TestCase):
 
 class WhatMatters(unittest.TestCase):
     def test_a_bill_tells_what_is_needed(self):
-        # The ball's largest pressure is 2013: a limit of 1000 is reached.
+        # The largest pressure of the ball is 2013, above the limit of 1000.
         bill = cn.what_matters(H, 0.1, 0.1, target=1e-2, layer=1e-12, pressure_limit=1000.0, **BALL)
         self.assertEqual((bill.needed, bill.negligible), (["pressure_limit"], ["layer"]))
         self.assertEqual({row.omitted for row in bill}, {("layer",), ("pressure_limit",), ("layer", "pressure_limit")})

@@ -1,4 +1,4 @@
-"""Files that the command line reads and writes by other packages: xarray and netCDF4, meshio, SurfaceTopography."""
+"""Files of the command line by other packages: xarray and netCDF4, meshio, SurfaceTopography."""
 
 import contextlib
 import io
@@ -59,7 +59,7 @@ class Files(unittest.TestCase):
             iy = np.round((centres[:, 1] / DY) + 0.5 * MY - 0.5).astype(int)
             self.assertEqual(len(set(zip(iy, ix))), MY * MX)
             np.testing.assert_array_equal(found, pressure[iy, ix])
-            # Counterclockwise, each of the area of an element: the shoelace formula.
+            # The corners are counterclockwise, and each cell has the area of an element: the shoelace formula.
             after = np.roll(corners, -1, axis=1)
             areas = 0.5 * (corners[..., 0] * after[..., 1] - corners[..., 1] * after[..., 0]).sum(axis=1)
             np.testing.assert_allclose(areas, DX * DY, rtol=1e-12)

@@ -16,17 +16,17 @@ pub fn refused(row: &Row, through: Through, handle: *mut contact_normal_solver) 
     for word in *words {
         assert!(message.contains(word), "{words:?} through {through:?}: \"{message}\" does not say {word}");
     }
-    // As `{:?}` of Rust prints a struct, or an enumerator behind a colon.
+    // Rust's `{:?}` prints braces for a struct, and for an enumerator behind a colon.
     assert!(!message.contains(['{', '}']), "{message}");
     assert!(call.outputs() == before, "{words:?} through {through:?}: outputs were written");
 }
 
-/// A stagnation by round-off says so; one of a method does not.
+/// The message of a stagnation names round-off if that is the reason, and not if the method stalled.
 #[test]
 fn a_stagnation_says_what_limits() {
     let mut call = Call::new();
     call.h.iter_mut().for_each(|h| *h += 1e9);
-    // The approach is found, so it has the rounding of 1e9.
+    // With a given force the approach has the rounding of 1e9.
     (call.scene.known.load, call.scene.known.force) = (CONTACT_NORMAL_PRESCRIBED_FORCE, 100.0);
     call.options.known.tolerance = 1e-12;
     let (status, message) = call.run(Through::Solve, null_mut());
@@ -34,7 +34,8 @@ fn a_stagnation_says_what_limits() {
     assert!(message.contains("round-off of distances of order 1e9"), "{message}");
 }
 
-/// All but one of the elements that touch are at their limit, which displaces by 1e-12 of the heights: those of the free one are what counts.
+/// All elements in contact but one are at their limit, whose displacements are 1e-12 of the heights. The message depends on the heights of the free
+/// element.
 #[test]
 fn beside_elements_at_their_limit_it_says_so_too() {
     let mut call = Call::new();
@@ -50,7 +51,7 @@ fn beside_elements_at_their_limit_it_says_so_too() {
     assert!(message.contains("round-off of distances of order"), "{message}");
 }
 
-/// Cycles that make everything worse end with p = 0. That is no matter of round-off.
+/// A smoother that diverges ends with p = 0. The message does not name round-off.
 #[test]
 fn a_diverging_smoother_is_not_blamed_on_round_off() {
     let mut call = Call::new();
@@ -62,7 +63,7 @@ fn a_diverging_smoother_is_not_blamed_on_round_off() {
     assert!(message.contains("p = 0") && !message.contains("round-off"), "{message}");
 }
 
-/// The round-off of numbers near 1 has nothing to do with where distances are measured from.
+/// If the tolerance is below the round-off of numbers near 1, the message does not name the offset of the distances.
 #[test]
 fn a_tolerance_below_round_off_is_named() {
     let mut call = Call::new();
@@ -72,7 +73,7 @@ fn a_tolerance_below_round_off_is_named() {
     assert!(message.contains("round-off of double precision") && !message.contains("nearer"), "{message}");
 }
 
-/// A given contact area may be pulled, by a call and by a handle that was set up for pressing.
+/// A fixed contact area may carry a tensile force, by a call and by a handle whose set-up had a compressive one.
 #[test]
 fn a_fixed_contact_area_may_be_pulled() {
     let handle = Call::new().new_handle();
@@ -107,14 +108,14 @@ fn a_valid_call_writes_every_output() {
 fn every_bad_scene_and_option_is_refused() {
     let handle = Call::new().new_handle();
     for row in SET_UP {
-        // A set-up may be without a surface.
+        // The set-up of a handle needs no surface.
         let has_surface = row.0 != ["undeformed_distance"];
         for through in [Through::Solve, Through::SolverNew, Through::SolverSolve, Through::SolverSolveBatch] {
             if has_surface || through != Through::SolverNew {
                 refused(row, through, handle);
             }
         }
-        // Own coefficients are refused there, whatever they are.
+        // An accuracy refuses all coefficients of the caller.
         if !row.0.iter().any(|word| ["influence", "coefficients", "row_tables"].contains(word)) {
             refused(row, Through::ToAccuracy, null_mut());
         }
@@ -131,7 +132,7 @@ fn every_bad_guess_and_output_is_refused() {
             refused(row, through, handle);
         }
     }
-    // The handle is as good as before.
+    // After the refusals the handle still solves.
     for through in [Through::SolverSolve, Through::SolverSolveBatch] {
         let mut call = Call::new();
         assert_eq!(call.run(through, handle).0, CONTACT_NORMAL_OK);

@@ -1,4 +1,4 @@
-//! The boundary keeps what the header promises: sizes, overlaps, callbacks, coefficients of the caller's own.
+//! Promises of the header at the boundary: sizes, overlaps, callbacks, the caller's own coefficients.
 
 mod callbacks;
 mod coefficients;
@@ -35,7 +35,7 @@ fn solved(call: &mut Call) {
     assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()));
 }
 
-/// That a status and its message are a refusal that says these words.
+/// Asserts that a status and its message refuse the call with these words.
 fn assert_refused(outcome: (i32, String), status: i32, words: &[&str]) {
     let (got, message) = outcome;
     assert_eq!(got, status, "{words:?}: {message}");

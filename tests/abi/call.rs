@@ -1,4 +1,4 @@
-//! One call of the C ABI with everything it may read or write, filled so that a write anywhere shows.
+//! One call of the C ABI with every input and output. Outputs are filled before the call, so that any write shows.
 
 use std::ffi::CStr;
 use std::ptr::{null, null_mut};
@@ -9,14 +9,14 @@ use contact_normal::ffi::*;
 pub const MX: usize = 6;
 pub const MY: usize = 5;
 const N: usize = MX * MY;
-/// Offsets of the table: more than the grid has.
+/// The table has more offsets than the grid.
 pub const CX: usize = 8;
 pub const CY: usize = 7;
-/// What outputs hold before a call. No solution has this value.
+/// The value of outputs before a call. No solution has it.
 const SENTINEL: f64 = -12345.678;
 const SENTINEL_CONTACT: i32 = -77;
 
-/// A struct as a later version may have it: with members that this one does not know.
+/// A struct of a later version, with members that this version does not know.
 #[repr(C)]
 pub struct Grown<T> {
     pub known: T,
@@ -34,19 +34,19 @@ impl<T> Grown<T> {
     }
 }
 
-/// Which exports a row goes through.
+/// The exports that a row of bad input goes through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Through {
     Solve,
     SolverNew,
     SolverSolve,
-    /// As the only problem of a batch.
+    /// The call is the only problem of a batch.
     SolverSolveBatch,
-    /// The handle that it makes is freed.
+    /// The handle that the call makes is freed.
     ToAccuracy,
 }
 
-/// The arguments of a call; as made by `new`, a valid one.
+/// The arguments of a call. Those of `new` are valid.
 pub struct Call {
     pub scene: Box<Grown<contact_normal_scene>>,
     pub influence: Box<Grown<contact_normal_influence>>,
@@ -56,7 +56,7 @@ pub struct Call {
     pub patches: Box<Grown<contact_normal_patches>>,
     pub row_tables: Box<Grown<contact_normal_row_tables>>,
     pub friction: Box<Grown<contact_normal_friction>>,
-    /// Tables of friction.
+    /// Tables of tangential coefficients: xx, yy, xy.
     pub tangential: Box<[contact_normal_influence; 3]>,
     pub tangential_rows: Box<[contact_normal_row_tables; 3]>,
     pub cycle: Box<Grown<contact_normal_cycle>>,
@@ -66,25 +66,25 @@ pub struct Call {
     pub accuracy: Box<Grown<contact_normal_accuracy>>,
     pub h: Vec<f64>,
     pub table: Vec<f64>,
-    /// The same for each loaded row.
+    /// Tables for each loaded row.
     pub tables: Vec<f64>,
     /// Values per element, of a layer or of limits.
     pub each: Vec<f64>,
-    /// Of two patches.
+    /// The patch of each element.
     pub patch: Vec<i32>,
     pub factors: Box<[f64; 4]>,
     pub pressure: Vec<f64>,
     pub contact: Vec<i32>,
     /// The argument that is NULL instead.
     pub without: &'static str,
-    /// Of a batch.
+    /// The status of the only problem of a batch.
     status: i32,
     others: Vec<f64>,
     ledger: Vec<contact_normal_ledger_row>,
     handle: *mut contact_normal_solver,
 }
 
-/// `T` as its `_init` leaves it.
+/// A `T` as its `_init` function leaves it.
 pub fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
     let mut value = std::mem::MaybeUninit::uninit();
     // SAFETY: `_init` fills a whole struct.
@@ -156,32 +156,32 @@ impl Call {
         call
     }
 
-    /// Names the table of coefficients in the scene, and the table to change.
+    /// Sets the table of coefficients in the scene, and returns it for changes.
     pub fn use_table(&mut self) -> &mut contact_normal_influence {
         self.scene.known.influence = &raw const self.influence.known;
         &mut self.influence.known
     }
 
-    /// The same with one table per loaded row.
+    /// Sets one table per loaded row in the scene, and returns the tables for changes.
     pub fn use_row_tables(&mut self) -> &mut contact_normal_row_tables {
         self.scene.known.row_tables = &raw const self.row_tables.known;
         &mut self.row_tables.known
     }
 
-    /// Names the cycle in the options, and the cycle to change.
+    /// Sets the cycle in the options, and returns it for changes.
     pub fn use_cycle(&mut self) -> &mut contact_normal_cycle {
         self.options.known.cycle = &raw const self.cycle.known;
         &mut self.cycle.known
     }
 
-    /// Names friction in the scene, and the friction to change: 0.3, a shift.
+    /// Sets friction in the scene, a shift with the coefficient 0.3, and returns it for changes.
     pub fn use_friction(&mut self) -> &mut contact_normal_friction {
         self.scene.known.friction = &raw const self.friction.known;
         (self.friction.known.coefficient, self.friction.known.creepage) = (0.3, [1e-3, 0.0]);
         &mut self.friction.known
     }
 
-    /// The table as that of xx and of yy, for friction; xy is 0.
+    /// Sets friction with the table for xx and for yy, and 0 for xy.
     pub fn use_tangential_tables(&mut self) -> &mut contact_normal_friction {
         self.tables.clear();
         self.tables.resize(4 * CX * CY, 0.0);
@@ -195,7 +195,7 @@ impl Call {
         friction
     }
 
-    /// Those of a half-space with a table for each loaded row.
+    /// Sets friction with the coefficients of the table as one table for each loaded row.
     pub fn use_tangential_row_tables(&mut self) -> &mut contact_normal_friction {
         let count = MY * MY * 2 * CX;
         self.tables.clear();
@@ -214,31 +214,31 @@ impl Call {
         friction
     }
 
-    /// Sets a coefficient of a loaded row and a row.
+    /// Sets the coefficient of a loaded row `jy`, a row `iy` and an offset kx.
     pub fn set_in_row(&mut self, jy: usize, iy: usize, kx: i64, value: f64) {
         self.use_row_tables();
         self.tables[(jy * MY + iy) * 2 * CX + (kx + CX as i64) as usize] = value;
     }
 
-    /// Names a layer in the scene, and the layer to change.
+    /// Sets a layer in the scene, and returns it for changes.
     pub fn use_layer(&mut self) -> &mut contact_normal_layer {
         self.scene.known.layer = &raw const self.layer.known;
         &mut self.layer.known
     }
 
-    /// The same with a limit of the pressures,
+    /// Sets a limit of the pressures in the scene, and returns it for changes.
     pub fn use_limit(&mut self) -> &mut contact_normal_pressure_limit {
         self.scene.known.pressure_limit = &raw const self.limit.known;
         &mut self.limit.known
     }
 
-    /// and with a period.
+    /// Sets the periods of the scene.
     pub fn use_period(&mut self, x: i32, y: i32) {
         self.scene.known.period = &raw const self.period.known;
         (self.period.known.x, self.period.known.y) = (x, y);
     }
 
-    /// Two patches side by side, with these factors.
+    /// Sets two patches side by side with these factors.
     pub fn use_patches(&mut self, factors: [f64; 4]) -> &mut contact_normal_patches {
         // On the heap: a call may be moved.
         *self.factors = factors;
@@ -248,13 +248,13 @@ impl Call {
         &mut self.patches.known
     }
 
-    /// One compliance per element, one of which is changed.
+    /// Sets one compliance per element, that of element i to `value`.
     pub fn set_compliance(&mut self, i: usize, value: f64) {
         self.each[i] = value;
         self.use_layer().compliances = self.each.as_ptr();
     }
 
-    /// One limit per element, one of which is changed.
+    /// Sets one limit per element, that of element i to `value`.
     pub fn set_limit(&mut self, i: usize, value: f64) {
         self.each[i] = value;
         self.use_limit().limits = self.each.as_ptr();
@@ -266,13 +266,13 @@ impl Call {
         self.table[(ky + CY as i64) as usize * 2 * CX + (kx + CX as i64) as usize] = value;
     }
 
-    /// Solves the equations on the given elements; by default on all.
+    /// Fixes the contact area: by default all elements.
     pub fn fix_contact(&mut self) {
         self.options.known.active_set = CONTACT_NORMAL_ACTIVE_SET_FIXED;
         self.contact.fill(1);
     }
 
-    /// Makes the call; status and message.
+    /// Makes the call; returns status and message.
     pub fn run(&mut self, through: Through, handle: *mut contact_normal_solver) -> (i32, String) {
         let scene = if self.without == "scene" { null() } else { &raw const self.scene.known };
         let options = if self.without == "options" { null() } else { &raw const self.options.known };
@@ -288,7 +288,7 @@ impl Call {
                 Through::SolverSolveBatch => {
                     let status = &raw mut self.status;
                     let returned = contact_normal_solver_solve_batch(handle, 1, scene, options, fields, report, status);
-                    // Untouched when the call itself is refused.
+                    // The status of the problem is not written if the call itself is refused.
                     assert!(self.status == SENTINEL_CONTACT || self.status == returned);
                     returned
                 }
@@ -301,7 +301,7 @@ impl Call {
                     status
                 }
             };
-            // After OK the message is still that of the last call that had one.
+            // After OK the message is still that of an earlier call.
             (status, if status == CONTACT_NORMAL_OK { String::new() } else { last_error() })
         }
     }
@@ -329,7 +329,7 @@ impl Call {
         bytes
     }
 
-    /// That a valid call wrote every output, or `outputs` would show nothing.
+    /// Asserts that a valid call wrote every output; otherwise `outputs` would show nothing.
     pub fn assert_all_written(&self) {
         assert!(self.pressure.iter().chain(&self.others).all(|&value| value != SENTINEL));
         assert!(self.contact.iter().all(|&value| value == 0 || value == 1));

@@ -1,18 +1,18 @@
-//! The owner of a callback may write into its own arrays while a solve lasts: what the solve needs of them it has taken.
+//! The owner of a callback may write into the caller's arrays during a solve: the solve has copied what it needs.
 
 use std::ptr::null_mut;
 
 use crate::call::{Call, Through};
 use contact_normal::ffi::*;
 
-/// The arrays that a callback spoils.
+/// Arrays that a callback overwrites.
 struct Arrays {
     numbers: Vec<(*mut f64, usize)>,
     calls: u32,
 }
 
 unsafe extern "C" fn spoil(_: *const contact_normal_progress, user: *mut libc::c_void) -> i32 {
-    // SAFETY: the arrays of the call, which nobody else looks at now.
+    // SAFETY: the arrays of the call, which nothing else reads now.
     unsafe {
         let arrays = &mut *user.cast::<Arrays>();
         for &(start, n) in &arrays.numbers {

@@ -1,4 +1,4 @@
-//! Dumps of all calls beside the plain solve, and the program that reads them.
+//! Dumps of all calls other than a plain solve, and the program that replays them.
 
 use std::path::Path;
 use std::process::Command;
@@ -11,11 +11,11 @@ use crate::call::last_error;
 use crate::dump::{folder, text};
 use crate::dump_scene::Everything;
 
-/// The status of a dumped call, which its replay has, too.
+/// The status of a dumped call. Its replay has the same one.
 fn reproduced(path: &Path, call: &str) -> i32 {
     let read = || Dump::read(&std::fs::read(path).expect("a dump")).expect("a dump that can be read");
     let (status, mut missing) = (read().status(), read().missing());
-    // With a surface, and for stresses, the distance of the scene is not read.
+    // With a callback for the surface, and for stresses, the distance of the scene is not read.
     missing.retain(|name| name != "scene->undeformed_distance");
     assert_eq!((read().call(), missing), (call, Vec::new()));
     assert_eq!(read().replay().expect("a call").status, status, "{call}: {}", last_error());
@@ -47,7 +47,7 @@ fn set_ups_and_tangential_problems_are_made_again() {
         let status = solve(null_mut(), &scene, &mut report);
         assert!(status > 0, "{status}: {}", last_error());
         assert_eq!(reproduced(&path, "contact_normal_solve_tangential"), status);
-        // With a handle: from the tractions that it found last, and with its tables where the scene leaves them out.
+        // With a handle: from its last tractions, and with its tables if the scene names none.
         for effects in ["friction tables", "friction tangential_rows"] {
             let mut scene = Everything::new(effects);
             scene.options.dump = path_text.as_ptr();
@@ -90,7 +90,7 @@ fn tables_of_forces_are_made_again() {
     assert_eq!(reproduced(&path, "contact_normal_solve_tangential"), status);
 }
 
-/// A ball, from a callback.
+/// A ball, as the callback of a surface.
 unsafe extern "C" fn ball(mx: i32, my: i32, dx: f64, dy: f64, h: *mut f64, _: *mut libc::c_void) -> i32 {
     for iy in 0..my {
         for ix in 0..mx {
@@ -167,7 +167,7 @@ fn the_program_makes_the_call_again_and_says_whether_it_ends_alike() {
     let (code, said) = run(&path);
     assert!(code == Some(0) && said.ends_with("\nreproduced\n"), "{code:?}: {said}");
     assert!(said.contains(&format!("again: status {status} (stopped at a limit)")), "{said}");
-    // Of another status.
+    // A dump with another status is not reproduced.
     let bytes = std::fs::read(&path).expect("a dump");
     let at = bytes.windows(9).position(|bytes| bytes == b"\nstatus 1").expect("the status");
     let mut other = bytes.clone();

@@ -1,4 +1,4 @@
-//! Dumps of what a handle solves, and files that are not what a dump is.
+//! Dumps of solves with a handle, and files that are no valid dumps.
 
 use std::path::Path;
 use std::ptr::{null, null_mut};
@@ -43,7 +43,7 @@ fn a_handle_goes_on_from_what_is_in_the_file() {
             let mut before = vec![f64::NAN; 30];
             let mut fields = contact_normal_fields { pressure: before.as_mut_ptr(), ..Default::default() };
             assert_eq!(contact_normal_solver_fields(handle, &mut fields), CONTACT_NORMAL_OK);
-            // The handle has them.
+            // The handle has the coefficients.
             (scene.scene.influence, scene.scene.row_tables) = (null(), null());
             scene.options.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
             (scene.options.max_cycles, scene.options.tolerance) = (1, 1e-18);
@@ -69,7 +69,7 @@ fn a_handle_goes_on_from_what_is_in_the_file() {
     }
 }
 
-/// A step of unlike bodies goes on from the pressures before: the sideways displacements are by the change of the pressures.
+/// A step of unlike bodies continues from the previous pressures: the tangential displacements are those of the change of the pressures.
 #[test]
 fn a_step_of_unlike_bodies_goes_on_from_the_pressures_in_the_file() {
     let path = folder("unlike").join("failed");
@@ -100,7 +100,7 @@ fn a_step_of_unlike_bodies_goes_on_from_the_pressures_in_the_file() {
     }
 }
 
-/// Elements at their limit belong to the contact area of a start: without them p would be 0 there.
+/// Elements at their limit belong to the contact area of a start. Otherwise their p would begin at 0.
 #[test]
 fn a_start_beside_a_limit_is_the_same_again() {
     let path = folder("limit").join("failed");
@@ -129,7 +129,7 @@ fn a_start_beside_a_limit_is_the_same_again() {
     }
 }
 
-/// Bodies that relax go on from what the file says that they remember: with the pressures of the call itself, in its time.
+/// A step of viscoelastic bodies continues from the history in the file, with the pressures and the time of the call.
 #[test]
 fn a_step_in_time_goes_on_from_the_history_in_the_file() {
     let path = folder("history").join("failed");
@@ -155,19 +155,19 @@ fn a_step_in_time_goes_on_from_the_history_in_the_file() {
         assert!(status > 0, "{status}: {}", last_error());
         contact_normal_solver_free(handle);
         let dump = written(&path);
-        // A p, and a field of each branch.
+        // u = A p, and a field for each branch.
         assert_eq!(dump.doubles("handle.history").map(|history| history.len()), Some(2 + 6 * 30));
         let again = dump.replay().expect("a call");
         assert_eq!(again.status, status, "{}", last_error());
-        // The step from rest to 0.4, of 0.3, and of 0.2.
+        // The steps are 0.4 (from rest), 0.3 and 0.2.
         assert!(
             (report.visco.time - 0.9).abs() <= 1e-15 && again.report.expect("a report").visco.time == report.visco.time
         );
         assert_eq!(again.report.expect("a report").visco.compliance, report.visco.compliance);
-        // One iteration of each.
+        // Both have one iteration.
         let (force, other) = (report.normal.force, again.report.expect("a report").normal.force);
         assert!((other / force - 1.0).abs() <= 1e-12, "{force} {other}");
-        // One branch less than its history has.
+        // A scene with one branch less than the history.
         let mut changed = std::fs::read(&path).expect("a dump");
         let line = b"int32 branches[0] 2\n";
         let at = changed.windows(line.len()).rposition(|bytes| bytes == line).expect("the branches of body 1");
@@ -204,7 +204,7 @@ fn a_batch_leaves_the_scenes_that_fail() {
     assert_eq!(dump.replay().expect("a call").status, CONTACT_NORMAL_NOT_FINITE);
 }
 
-/// What is wrong with a file is an error, and a call with wrong lengths is refused: whatever the file says.
+/// A damaged file is an error, and a call with wrong lengths is refused, whatever the file contains.
 #[test]
 fn files_that_were_changed_are_read_without_harm() {
     let path = folder("changed").join("failed");
@@ -223,7 +223,7 @@ fn files_that_were_changed_are_read_without_harm() {
     for _ in 0..2000 {
         let mut changed = bytes.clone();
         for _ in 0..1 + random(3) {
-            // Mostly of the text.
+            // Most changes are in the text.
             let at = random(changed.len());
             match random(4) {
                 0 => changed[at] = random(256) as u8,
@@ -255,7 +255,7 @@ fn a_file_that_says_more_than_it_holds_is_refused() {
     let bytes = std::fs::read(&path).expect("a dump");
     let find = |what: &[u8]| bytes.windows(what.len()).position(|bytes| bytes == what).expect("a line");
     let mut larger = bytes.clone();
-    // 6 elements in x: 9 of them.
+    // The header of a dump of 6 elements in x, changed to 9.
     larger[find(b"int32 mx 6") + 9] = b'9';
     let dump = Dump::read(&larger).expect("a dump that can be read");
     assert_eq!(dump.replay().expect("a call").status, CONTACT_NORMAL_INVALID_ARGUMENT);

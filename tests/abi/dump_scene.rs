@@ -7,17 +7,17 @@ use contact_normal::ffi::*;
 pub const MX: usize = 6;
 pub const MY: usize = 5;
 const N: usize = MX * MY;
-/// Offsets of tables: more than the grid has.
+/// Tables have more offsets than the grid.
 const CX: usize = 8;
 const CY: usize = 7;
 
-/// The structs and arrays of a call; the structs are boxed, for they point to each other.
+/// The structs and arrays of a call. The structs are boxed, because they point to each other.
 pub struct Everything {
     pub scene: contact_normal_scene,
     pub options: contact_normal_options,
     pub friction: Box<contact_normal_friction>,
     pub h: Box<[f64]>,
-    /// Whether pressures and contact area are given and wanted.
+    /// Whether pressures and contact area are passed as fields.
     pub with_outputs: bool,
     _structs: Box<Structs>,
     _arrays: Vec<Box<[f64]>>,
@@ -61,7 +61,7 @@ fn half_space() -> Vec<f64> {
 }
 
 impl Everything {
-    /// `effects`: their names as in the scene, and "tables" or "tangential_rows": own tables of friction.
+    /// `effects`: names of effects as in the scene, and "tables" or "tangential_rows" for own tables of friction.
     pub fn new(effects: &str) -> Everything {
         let names = |name: &str| effects.split(' ').any(|named| named == name);
         let h: Box<[f64]> =
@@ -115,7 +115,7 @@ impl Everything {
         let mut scene = contact_normal_scene { mx: MX as i32, my: MY as i32, dx: 0.5, dy: 0.25, ..Default::default() };
         scene.undeformed_distance = h.as_ptr();
         (scene.shear_modulus, scene.poisson_ratio, scene.approach) = ([82000.0; 2], [0.28; 2], 0.03);
-        // NULL without the effect.
+        // NULL for an effect that is not named.
         fn of<T>(is_named: bool, effect: &T) -> *const T {
             if is_named {
                 effect

@@ -102,7 +102,7 @@ impl Call {
     }
 }
 
-/// The status of an entry is that of the call: it was CANCELLED where time ran out.
+/// The status of an entry is that of the call, also if the time limit ends it.
 #[test]
 fn entries_that_time_ends_have_reached_a_limit() {
     let mut call = Call::new();
@@ -111,7 +111,7 @@ fn entries_that_time_ends_have_reached_a_limit() {
     assert!(status == CONTACT_NORMAL_ITERATION_LIMIT && message.contains("max_seconds was reached"), "{message}");
     assert!(call.status.iter().all(|status| [0, CONTACT_NORMAL_ITERATION_LIMIT].contains(status)), "{:?}", call.status);
     assert!(call.status.contains(&CONTACT_NORMAL_ITERATION_LIMIT));
-    // One problem, on all threads.
+    // One problem uses all threads.
     let mut call = Call::new();
     (call.options.max_seconds, call.friction.creepage) = (1e-9, [-1e-6, 2e-7]);
     let (status, message) = call.run_with(call.pressure.as_ptr(), 1, null());
@@ -148,7 +148,7 @@ fn all_results_are_written_and_agree() {
     }
     assert!((call.report.normal.force - call.pressure.iter().sum::<f64>()).abs() <= 1e-12);
     let given = call.force.clone();
-    // The same without fields, and for the pressures of the normal problem.
+    // The results are equal without fields, and with the pressures of the normal problem.
     call.results = contact_normal_friction_results {
         force: call.results.force,
         ..initialised(contact_normal_friction_results_init)
@@ -184,7 +184,7 @@ fn the_call_itself_is_refused_by_name() {
         let (got, message) = call.run();
         assert!(got == status && message.contains(word), "{word}: {got} {message}");
         assert!((0..COUNT).all(|i| !call.is_written(i)), "{word}");
-        // Where it is no status that overlaps.
+        // No status overlaps here.
         assert!(call.status[0] == UNTOUCHED);
     };
     refused(&|call| call.scene.friction = null(), CONTACT_NORMAL_INVALID_ARGUMENT, "friction");
@@ -203,7 +203,7 @@ fn the_call_itself_is_refused_by_name() {
     assert!(status == CONTACT_NORMAL_NULL_POINTER && message.contains("entries"));
 }
 
-/// Cancels once so many entries are done.
+/// Cancels once `user` entries are done.
 unsafe extern "C" fn cancel(progress: *const contact_normal_progress, user: *mut libc::c_void) -> i32 {
     // SAFETY: the library's progress, and our count.
     let (done, limit) = unsafe { ((*progress).cycles, *user.cast::<i64>()) };

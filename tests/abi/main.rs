@@ -1,4 +1,4 @@
-//! What the C ABI promises whatever comes in; called from Rust.
+//! Promises of the C ABI for any input; called from Rust.
 
 mod bad_handles;
 mod bad_input;

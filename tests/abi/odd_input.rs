@@ -1,4 +1,4 @@
-//! Input that looks odd but is allowed; elements at their limit, batches with friction, and fixed areas.
+//! Unusual input that is allowed; elements at their limit, batches with friction, and fixed areas.
 
 use std::ptr::{null, null_mut};
 
@@ -18,7 +18,7 @@ fn elements_at_the_limit_are_in_contact_with_2() {
     assert_eq!(call.report.known.normal.max_pressure, 1000.0);
 }
 
-/// Codes of a host's own, 2 for slip: with a fixed area `contact` is only read.
+/// The host's own codes, 2 for slip: with a fixed area `contact` is only read.
 #[test]
 fn codes_of_a_fixed_area_stay() {
     let mut call = Call::new();
@@ -37,7 +37,7 @@ fn codes_of_a_fixed_area_stay() {
     unsafe { contact_normal_solver_free(handle) };
 }
 
-/// Arrays in packed structs may begin anywhere.
+/// In packed structs an array may begin at any byte; such arrays are refused.
 #[test]
 fn an_array_between_two_doubles_is_refused_by_name() {
     let mut call = Call::new();
@@ -54,7 +54,7 @@ fn an_array_between_two_doubles_is_refused_by_name() {
     let (status, message) = call.run(Through::Solve, null_mut());
     assert_eq!(status, CONTACT_NORMAL_INVALID_ARGUMENT);
     assert!(message.starts_with("undeformed_distance begins at 0x"), "{message}");
-    // Those that are read before anything else, and of calls without a scene.
+    // So are arrays that are read first, and those of calls without a scene.
     let mut solution = contact_normal_hertz_solution::default();
     let (odd, bodies) = (start.wrapping_add(shift).cast::<f64>(), [0.3; 2]);
     // SAFETY: arrays of two values, one of them at an odd place, which is not read.
@@ -65,7 +65,7 @@ fn an_array_between_two_doubles_is_refused_by_name() {
     assert!(last_error().starts_with("shear_modulus begins at 0x"), "{}", last_error());
 }
 
-/// Of a batch that problem alone is refused.
+/// In a batch only that problem is refused.
 #[test]
 fn a_problem_with_such_an_array_is_refused_by_its_number() {
     let mut call = Call::new();
@@ -87,7 +87,7 @@ fn a_problem_with_such_an_array_is_refused_by_its_number() {
     unsafe { contact_normal_solver_free(handle) };
 }
 
-/// Which tractions a worker of a batch has is not known, so nothing goes on from them; on the handle itself it does.
+/// The tractions of a worker of a batch depend on the share of problems, so no problem continues from them. On the handle itself steps continue.
 #[test]
 fn a_batch_refuses_friction_that_continues() {
     let mut call = Call::new();
@@ -107,10 +107,10 @@ fn a_batch_refuses_friction_that_continues() {
     unsafe { contact_normal_solver_free(handle) };
 }
 
-/// A name, and what is changed in a good call.
+/// A name, and a change of a valid call.
 type Change = (&'static str, fn(&mut Call));
 
-/// Everything that looks odd but is allowed.
+/// Unusual input that is allowed.
 #[rustfmt::skip]
 const ACCEPTED: &[Change] = &[
     ("default options", |c| c.without = "options"),
@@ -145,7 +145,7 @@ fn what_is_allowed_is_solved() {
         let mut call = Call::new();
         change(&mut call);
         assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()), "{name}");
-        // The pressures do not depend on the table's last row and column.
+        // Without fields, or without pressures, no output is written.
         if call.without == "fields" || call.fields.known.pressure.is_null() {
             assert!(call.contact.iter().all(|&c| c == -77), "{name}: written, though not wanted");
         } else {
@@ -156,7 +156,7 @@ fn what_is_allowed_is_solved() {
     }
 }
 
-/// `load` needs to be named only where both amounts are numbers.
+/// `load` must be set only if both amounts are numbers.
 #[test]
 fn the_load_is_the_one_that_is_set() {
     let pressures = |load: i32, approach: f64, force: f64| {
@@ -171,7 +171,7 @@ fn the_load_is_the_one_that_is_set() {
     assert!(pressures(UNSET, 0.03, NAN) == by_approach && pressures(UNSET, NAN, 100.0) == by_force);
 }
 
-/// The set-up of a handle, and the tangential problem of given pressures.
+/// The set-up of a handle and the tangential problem of given pressures need no load.
 #[test]
 fn what_uses_no_load_needs_none() {
     let mut call = Call::new();

@@ -56,7 +56,7 @@ impl Call {
         outputs.principal = call.principal.each_mut().map(|v| v.as_mut_ptr());
         outputs.directions = call.directions.each_mut().map(|v| v.as_mut_ptr());
         let at = call.largest.as_mut_ptr();
-        // SAFETY: two of them.
+        // SAFETY: room for two.
         (outputs.largest_von_mises, outputs.largest_shear) = (at, unsafe { at.add(1) });
         call
     }
@@ -140,7 +140,7 @@ fn what_is_null_is_not_written_and_bodies_have_their_own_ratio() {
     assert_eq!(one.stress, swapped.stress);
     assert_eq!(one.stress[1], only.stress[1]);
     assert_ne!(one.stress[1], two.stress[1]);
-    // No depth at all is fine, too.
+    // A call without depths is allowed.
     one.depths.clear();
     assert_eq!(one.run().0, CONTACT_NORMAL_OK);
 }
@@ -227,7 +227,7 @@ fn bodies_that_are_no_half_spaces_are_refused_by_name() {
             assert!(status == CONTACT_NORMAL_UNSUPPORTED && message.contains(name), "{name}: {status} {message}");
         }
     }
-    // Two periods are solved on the grid. A layer of no thickness, or of the material below, is none; the other body may have one.
+    // Two periods are allowed on the grid. So are a coating without thickness or of the substrate's material, and one of the other body.
     let (on_grid, (status, message)) = ask(&|scene| scene.period = &periods[2]);
     assert_eq!(on_grid.0, CONTACT_NORMAL_OK);
     assert!(status == CONTACT_NORMAL_UNSUPPORTED && message.contains("period"), "{message}");
@@ -258,7 +258,7 @@ fn null_pointers_are_refused() {
     }
 }
 
-/// Counts what it is told, and cancels at the second depth.
+/// Counts its calls, and cancels at the second depth.
 unsafe extern "C" fn cancel(progress: *const contact_normal_progress, user: *mut c_void) -> i32 {
     // SAFETY: as the library calls it, with the counter below.
     unsafe {
@@ -322,7 +322,7 @@ fn points_at_the_centres_have_the_stresses_of_the_grid() {
     assert_eq!(at(points.as_ptr(), null_mut()).0, CONTACT_NORMAL_NULL_POINTER);
 }
 
-/// What is below a patch knows nothing of an independent one, by planes and by points.
+/// The stresses below a patch do not depend on an independent one, by planes and by points.
 #[test]
 fn patches_of_the_scene_scale_the_loads() {
     let patch: Vec<i32> = (0..N).map(|i| i32::from(i % MX >= 2)).collect();
@@ -364,7 +364,7 @@ fn patches_of_the_scene_scale_the_loads() {
     assert!(status == CONTACT_NORMAL_INVALID_ARGUMENT && message.contains("patches->count is 65"), "{message}");
 }
 
-/// Time ends the stresses of points as it ends those of depths. 40000 points take more than a block.
+/// The time limit ends stresses at points as it ends those at depths. 40000 points are more than one block.
 #[test]
 fn points_keep_to_a_limit_of_time() {
     let mut call = Call::new();

@@ -1,4 +1,4 @@
-//! What a report warns of, even where the status is OK.
+//! Warnings of a report, also if the status is OK.
 
 use std::ptr::null;
 
@@ -47,7 +47,7 @@ fn a_contact_that_is_resolved_has_none() {
     assert_eq!((report.warnings, report.normal.edge_count), (0, 0));
 }
 
-/// A batch whose problems are all OK has the message of their warnings, not that of a call before.
+/// A batch whose problems are all OK has the message of their warnings, not that of an earlier call.
 #[test]
 fn a_batch_says_what_its_problems_warn_of() {
     let surface = ball(0.0);
@@ -100,7 +100,7 @@ fn contact_at_the_border_where_nothing_repeats_itself() {
     assert!(report.normal.edge_count > 0);
     assert_ne!(report.warnings & CONTACT_NORMAL_WARNING_BORDER, 0);
     assert!(message.contains("reaches the border"), "{message}");
-    // A line across the grid: at both ends in x, which the period joins; not in y.
+    // A line across the grid reaches both borders in x, and none in y. The period joins those in x.
     let line: Vec<f64> = (0..M * M).map(|i| 0.02 * ((i / M) as f64 * D - 15.5 * D).powi(2)).collect();
     let mut period = contact_normal_period { x: 1, ..Default::default() };
     let border = |period: &contact_normal_period| {
@@ -130,7 +130,7 @@ fn one_element_that_carries_more_than_half() {
     assert_eq!(seen, [true; 2]);
 }
 
-/// Of an area that is given elements may pull, and the force is less than what one of them presses.
+/// On a fixed area elements may pull, and the total force is less than that of one pressing element. This is no spike.
 #[test]
 fn an_area_that_pulls_has_no_spike() {
     let surface = ball(0.0);
@@ -163,7 +163,7 @@ fn an_area_that_pulls_has_no_spike() {
     assert_eq!(report.warnings & CONTACT_NORMAL_WARNING_SPIKE, 0);
 }
 
-/// Elements at their limit are in contact, too.
+/// Elements at their limit are in contact, also at the border.
 #[test]
 fn elements_at_their_limit_reach_the_border() {
     // A ridge along the first column, which is at its limit.
@@ -179,7 +179,7 @@ fn elements_at_their_limit_reach_the_border() {
     assert_eq!(report.normal.contact_count, M as i64);
 }
 
-/// A search that begins on few elements: the warnings are those of its last grid. With a limit the error is that of several grids, and known.
+/// A search begins on few elements, but its warnings are those of its last grid. With a limit several grids give the error, so that it is known.
 #[test]
 fn a_search_warns_of_its_last_grid() {
     let h: Vec<f64> = (0..64)

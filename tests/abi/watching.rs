@@ -1,5 +1,5 @@
-//! What ends a call from outside beside its callback: a limit of time, and an integer that another thread may set. What handles and the
-//! library say of themselves, and what they keep.
+//! Ways to end a call from outside other than its callback: a time limit, and an integer that another thread may set. Also what handles and the
+//! library report about themselves, and the memory they keep.
 
 use std::ffi::CString;
 use std::ptr::null_mut;
@@ -68,7 +68,7 @@ unsafe extern "C" fn set_stop(_: *const contact_normal_progress, user: *mut libc
     0
 }
 
-/// The bill of `neglect_below` calls `progress` and looks at `stop`.
+/// The bill of `neglect_below` calls `progress` and reads `stop`.
 #[test]
 fn what_leaves_effects_out_asks_as_well() {
     let told = |neglect_below: f64| {
@@ -94,11 +94,11 @@ fn what_leaves_effects_out_asks_as_well() {
     call.options.known.user = (&raw mut grids).cast();
     let (status, message) = call.run(Through::Solve, null_mut());
     assert!(status == CONTACT_NORMAL_CANCELLED && message.contains("options->stop"), "{status} {message}");
-    // `stop` is asked before the callback.
+    // `stop` is read before the callback.
     assert!(grids.is_empty(), "{grids:?}");
 }
 
-/// Notes the columns of the grid of a cycle.
+/// Records the number of columns of the grid of each cycle.
 unsafe extern "C" fn note_grid(told: *const contact_normal_progress, user: *mut libc::c_void) -> i32 {
     // SAFETY: the library's struct and the test's own list.
     unsafe { (*user.cast::<Vec<i32>>()).push((*told).mx) };
@@ -144,7 +144,7 @@ fn what_is_known_by_name() {
         unsafe { contact_normal_has(name.as_ptr()) }
     };
     assert_eq!(["friction", "adhesion", "max_seconds", "stop", "warnings"].map(has), [1; 5]);
-    // Members and functions that were forgotten.
+    // Members and functions.
     assert_eq!(["neglect_below", "error_ratio", "branch", "previous_coefficient"].map(has), [1; 4]);
     assert_eq!(["quantities", "effects_bill", "coating_compliance"].map(has), [1; 3]);
     assert_eq!(["", "Friction", "friction ", "wear", "magnetism"].map(has), [0; 5]);
@@ -152,7 +152,7 @@ fn what_is_known_by_name() {
     assert_eq!(unsafe { contact_normal_has(std::ptr::null()) }, 0);
 }
 
-/// Other tests of this process keep memory and threads at the same time, so only bounds can be said.
+/// Other tests of this process keep memory and threads at the same time, so that only bounds hold.
 #[test]
 fn what_is_kept_is_released() {
     let kept = || {
@@ -168,7 +168,7 @@ fn what_is_kept_is_released() {
     assert!(kept().1 >= 6, "the pool of 7 threads is kept");
     assert_eq!(contact_normal_release(), CONTACT_NORMAL_OK);
     assert!(kept().1 < 6, "it is released");
-    // A solve afterwards makes it anew.
+    // The next solve makes the pool again.
     assert_eq!(call.run(Through::Solve, null_mut()).0, CONTACT_NORMAL_OK);
     assert_eq!(contact_normal_keep(-1), CONTACT_NORMAL_INVALID_ARGUMENT);
     assert!(last_error().contains("bytes is -1"), "{}", last_error());
@@ -176,11 +176,11 @@ fn what_is_kept_is_released() {
     assert_eq!(call.run(Through::Solve, null_mut()).0, CONTACT_NORMAL_OK);
     assert_eq!(kept().0, 0, "nothing is kept any more");
     assert_eq!(contact_normal_keep(512 << 20), CONTACT_NORMAL_OK);
-    // SAFETY: not wanted.
+    // SAFETY: NULL: not wanted.
     assert_eq!(unsafe { contact_normal_kept(null_mut(), null_mut()) }, CONTACT_NORMAL_OK);
 }
 
-/// The price list solves on small grids: these are calls, too.
+/// The price list solves on small grids. These are also calls.
 #[test]
 fn a_price_list_ends_at_its_limit_of_time_and_by_the_integer() {
     let (mut call, stop) = (Call::new(), 1);

@@ -1,4 +1,4 @@
-//! `contact_normal_frictional_wear`: memory that overlaps, structs, and what is left alone by a call that is refused.
+//! `contact_normal_frictional_wear`: overlaps, structs, and outputs that a refused call does not write.
 
 use std::ptr::{null, null_mut};
 
@@ -52,7 +52,7 @@ fn results_that_overlap_with_anything_are_refused() {
             (call.work.as_mut_ptr(), call.depth.as_mut_ptr(), call.passage.as_mut_ptr(), &mut call.worn);
         spoil(&mut call, &mut to);
         if !std::ptr::eq(to.3, &call.worn) {
-            // It must be a struct of the caller's.
+            // The struct must be valid.
             // SAFETY: room for 6 values of 8 bytes, which are the struct.
             unsafe { to.3.write(call.worn) };
         }

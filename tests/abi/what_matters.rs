@@ -1,4 +1,4 @@
-//! Quantities, the bill of effects, and what is neglected, at the boundary: rows of a caller's size, refusals by name, nothing written beyond.
+//! Quantities, the bill of effects, and neglected effects, at the boundary: rows of the caller's size, refusals by name, no write beyond.
 
 use std::ptr::{null, null_mut};
 
@@ -7,7 +7,7 @@ use contact_normal::ffi::*;
 
 const WANTED: [i32; 2] = [CONTACT_NORMAL_QUANTITY_FORCE, CONTACT_NORMAL_QUANTITY_STIFFNESS];
 
-/// A row of a newer header, with what this library does not know behind it.
+/// A row of a newer header, with a member that this library does not know.
 #[repr(C)]
 #[derive(Clone, Copy)]
 struct Longer<T> {
@@ -25,9 +25,9 @@ fn of_layer() -> Call {
 fn quantities(call: &Call, n: i32, wanted: *const i32, coarser: i32) -> (i32, Vec<contact_normal_quantity_row>, i32) {
     let struct_size = size_of::<Longer<contact_normal_quantity_row>>() as i64;
     let row = contact_normal_quantity_row { struct_size, ..Default::default() };
-    // n rows for each of up to 13 grids: all of that must be the caller's memory, and no input may lie there.
+    // n rows for each of up to 13 grids must be memory of the caller without inputs.
     let mut rows = vec![Longer { row, unknown: -7 }; 26];
-    // What the first row says of what this library does not know must be 0.
+    // Unknown members of the first row must be 0.
     rows[0].unknown = 0;
     let mut written = -1;
     // SAFETY: structs with the arrays that they declare.
@@ -58,7 +58,7 @@ fn bill(call: &Call, target: f64, pairs: i32, capacity: i32) -> (i32, Vec<contac
 #[test]
 fn rows_of_quantities_have_the_callers_size() {
     let (status, rows, written) = quantities(&Call::new(), 2, WANTED.as_ptr(), 1);
-    // 6 x 5 elements, and 3 x 3 (5/2, rounded).
+    // Grids of 6 x 5 and 3 x 3 elements (5/2, rounded up).
     assert_eq!((status, written), (CONTACT_NORMAL_OK, 4), "{}", last_error());
     assert_eq!(rows[..4].iter().map(|row| (row.mx, row.my)).collect::<Vec<_>>(), [(3, 3), (3, 3), (6, 5), (6, 5)]);
     assert!(rows[..4]
@@ -67,7 +67,7 @@ fn rows_of_quantities_have_the_callers_size() {
         .all(|(row, wanted)| row.quantity == *wanted && row.value > 0.0));
     assert_eq!((rows[1].error, rows[1].lack), (-1.0, CONTACT_NORMAL_LACK_ONE_GRID));
     assert!(rows[3].error > 0.0 && rows[3].lack == CONTACT_NORMAL_LACK_NONE);
-    // So many grids are not there.
+    // There are fewer grids.
     assert_eq!(quantities(&Call::new(), 2, WANTED.as_ptr(), 3).2, 8);
     assert_eq!(quantities(&Call::new(), 1, WANTED.as_ptr(), 12).0, CONTACT_NORMAL_OK, "{}", last_error());
 }

@@ -1,4 +1,4 @@
-//! The conditions of adhesion, by a direct sum with Love's coefficients, and by formulas of the laws that stand here once more.
+//! The conditions of adhesion, by a direct sum with Love's coefficients, and by independent formulas of the laws.
 
 use std::f64::consts::PI;
 
@@ -41,7 +41,8 @@ pub fn traction(law: Law, work: f64, range: f64, e: f64) -> f64 {
         }
 }
 
-/// The worst of the conditions, each relative: e in C to the distances there, -e outside to the same, p + sigma outside and -q in C to p.
+/// The largest violation, with q = p + sigma: of e = 0 in C and e >= 0 outside relative to the distances in C, of q = 0 outside and q >= 0 in C
+/// relative to p.
 pub fn worst(state: &State, u: &[f64], attraction: impl Fn(usize, f64) -> f64) -> f64 {
     let (mut inside, mut distances, mut outside, mut all) = (0.0, 0.0, 0.0, 0.0);
     let (mut penetration, mut pulled, mut largest) = (0.0f64, 0.0f64, 0.0f64);

@@ -1,4 +1,4 @@
-//! Few cycles: a result is that of the status, and more cycles do not bring a worse state.
+//! Few cycles: the state agrees with the status, and more cycles do not make it worse.
 
 use contact_normal::adhesion::Law;
 use contact_normal::grid::Grid;
@@ -7,8 +7,8 @@ use contact_normal::solver::{Guess, InitialGuess, Options, Outcome, Solver};
 
 use super::support::{adhesion, bodies, Sphere};
 
-/// Waves pressed together have two states of a force: one on the branch whose force falls as bodies come closer. From that one the other is sought, and cycles
-/// end on the way: the state is then not one of the force.
+/// Waves that are pressed together have two states of one force; in one of them the force falls as the bodies approach. The solve starts there and
+/// looks for the other state. If the cycles end on the way, the state does not have the force.
 #[test]
 fn the_stable_state_of_a_force_is_found_or_cycles_end() {
     let n = 32;
@@ -46,7 +46,7 @@ fn the_stable_state_of_a_force_is_found_or_cycles_end() {
     assert!(ends[0] > 0 && ends[1] > 0, "{ends:?}");
 }
 
-/// Cycles end on the way down to a pull: the state is the strongest that was found, not one between two states.
+/// If the cycles end during the descent to a pull, the state is the strongest one that was found, and not one between two states.
 #[test]
 fn more_cycles_do_not_lose_the_state_of_a_pull() {
     let n = 32;
@@ -79,7 +79,7 @@ fn more_cycles_do_not_lose_the_state_of_a_pull() {
     }
 }
 
-/// Pressures that are given start at the approach of their contact, as those of a handle do: a replay goes the way of the call that was recorded.
+/// Given pressures start at the approach of their contact, as those of a handle do. So a replay follows the path of the recorded call.
 #[test]
 fn given_pressures_go_on_as_previous_ones_do() {
     let sphere = Sphere::by_tabor(1.0, 48, 3.0);
@@ -98,7 +98,7 @@ fn given_pressures_go_on_as_previous_ones_do() {
     assert!((other.state().approach - solver.state().approach).abs() < 1e-5);
 }
 
-/// Flat bodies with two periods part at once, at all of the attraction. Below it no contact problem with that attraction has a solution.
+/// Flat bodies with two periods part at once, at the whole attraction. Below it no contact problem with that attraction has a solution.
 #[test]
 fn flat_bodies_with_two_periods_part_at_once() {
     let grid = Grid::new(4, 4, 1.0, 1.0).expect("a grid");
@@ -115,7 +115,7 @@ fn flat_bodies_with_two_periods_part_at_once() {
     assert!((report.measures.force + 16.0).abs() < 1e-12, "{:e}", report.measures.force);
 }
 
-/// The contact problems of a descent have the cycles that are left. Each of them took up to `max_cycles`: 7 for 1, 48 for 40.
+/// The contact problems of a descent share the cycles of the solve.
 #[test]
 fn a_descent_takes_no_more_cycles_than_it_may() {
     let n = 64;

@@ -5,7 +5,8 @@
 //! [ r A_OC     r A_OO r - 1      ]  x  =  [ r ]      dF/dapproach is the right-hand side times x
 //! ```
 //!
-//! Eliminated from above, the pivots of C are positive. With the contact area held the energy is least if those outside are negative, all of them.
+//! With elimination from the top the pivots of C are positive. For a fixed contact area the energy has a minimum if all pivots outside C are
+//! negative.
 
 use contact_normal::adhesion::Law;
 use contact_normal::contact::State;
@@ -13,12 +14,12 @@ use contact_normal::grid::Grid;
 
 use super::certificate::{displacements, traction};
 
-/// What a dense matrix says about a state.
+/// The tangent of a state, by a dense matrix.
 #[derive(Clone, Copy, Debug)]
 pub struct Tangent {
     /// dF/dapproach.
     pub stiffness: f64,
-    /// Whether the energy is least at the approach.
+    /// Whether the energy has a minimum at the approach.
     pub is_least: bool,
 }
 
@@ -32,7 +33,7 @@ pub fn matrix(grid: &Grid, modulus: f64) -> Vec<Vec<f64>> {
     (0..grid.len()).map(unit).collect()
 }
 
-/// The tangent of a state, at a law with its work and range.
+/// The tangent of a state, for a law with its work and range.
 pub fn tangent(grid: &Grid, a: &[Vec<f64>], state: &State, (law, work, range): (Law, f64, f64)) -> Tangent {
     let distance = |i: usize| {
         let u: f64 = a[i].iter().zip(&state.p).map(|(a, p)| a * p).sum();
@@ -58,7 +59,7 @@ pub fn tangent(grid: &Grid, a: &[Vec<f64>], state: &State, (law, work, range): (
         })
         .collect();
     let right: Vec<f64> = order.iter().map(|&(_, r, _)| r).collect();
-    // L D L' without a change of the order: stiffness is the sum of (L^-1 right)^2/D.
+    // L D L' without pivoting: stiffness is the sum of (L^-1 right)^2/D.
     let (mut left, mut stiffness, mut is_least) = (right, 0.0, true);
     for k in 0..rows.len() {
         let pivot = rows[k][k];

@@ -1,4 +1,4 @@
-//! Scenes at the end of what there is: the right answer, or a status that says what happened.
+//! Extreme scenes: the right answer, or a status that says what happened.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use contact_normal::solver::{self, Options, Outcome, Progress, Solver};
 
 use super::support::{adhesion, bodies, Sphere, MODULUS};
 
-/// Solves, and looks at everything that is returned.
+/// Solves, and checks all values that are returned.
 fn solve(scene: &Scene<'_>) -> Result<Outcome, String> {
     let options = Options { max_cycles: 300, ..Options::default() };
     let (solver, outcome, report) = solver::solve(scene, &options).map_err(|error| error.to_string())?;
@@ -116,7 +116,7 @@ fn it_can_be_cancelled_at_every_callback() {
     ] {
         let scene = Scene { adhesion: Some(Adhesion { start, ..sphere.adhesion }), ..sphere.scene(load) };
         let mut solver = Solver::new(&scene, &Options::default()).expect("a solver");
-        // A pull-off asks some hundred times: it is cancelled at the first ones, and at every 16th.
+        // A pull-off has some hundred callbacks: it is cancelled at the first ones, and at every 16th.
         for at in (1..2000).filter(|at| !pull_off || *at < 8 || at % 16 == 0) {
             let mut calls = 0;
             let mut cancel = |_: &Progress| {

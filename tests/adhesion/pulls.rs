@@ -11,7 +11,7 @@ use super::dense::{matrix, tangent};
 use super::random::range_of_kappa;
 use super::support::{adhesion, bodies, range_of, Sphere, MODULUS};
 
-// The prototype's path of steps has its least force of -1.6641 at about -.45; the unstable state of -1.4 is at -.9006.
+// The prototype's least force is -1.6641, at about -.45, on a path of steps. The unstable state of -1.4 is at -.9006.
 #[test]
 fn a_pull_finds_the_stable_state() {
     let sphere = Sphere::by_tabor(1.0, 64, 3.0);
@@ -28,7 +28,7 @@ fn a_pull_finds_the_stable_state() {
         assert!(approach > -0.55 && approach < below, "{force}: {approach}");
         assert!(found.stiffness.is_some_and(|stiffness| stiffness > 0.0));
         assert!((report.measures.force - force).abs() < 1e-5);
-        // The same by approach.
+        // A solve by this approach has the same force.
         let (_, by_approach) = sphere.solve(Load::Approach(approach));
         assert!((by_approach.force - force).abs() < 1e-4, "{} {force}", by_approach.force);
     }
@@ -44,12 +44,12 @@ fn the_stiffness_is_a_difference_of_forces() {
             solver::solve(&scene, &Options { tolerance: 1e-8, ..Options::default() }).expect("a solve");
         (report.measures.force, report.adhesion.and_then(|found| found.stiffness).expect("a stiffness"))
     };
-    // Printed by the prototype (t10.py): 1.105 and -1.800; a change of the contact area makes a difference of forces ragged.
+    // Printed by the prototype (t10.py): 1.105 and -1.800, by differences of forces, which vary with the contact area.
     for (approach, printed) in [(0.4, 1.105), (-0.9, -1.8)] {
         let (_, stiffness) = at(&sphere, approach);
         assert!((stiffness - printed).abs() < 0.03 * f64::abs(printed), "{approach}: {stiffness} {printed}");
     }
-    // Larger grids solve their linear systems in parts; their differences are smoother.
+    // On larger grids the linear systems are solved in parts, and differences of forces are smoother.
     let fine = Sphere::by_tabor(1.0, 192, 3.0);
     let [(below, _), (_, stiffness), (above, _)] = [0.3, 0.4, 0.5].map(|approach| at(&fine, approach));
     let slope = (above - below) / 0.2;
@@ -65,8 +65,8 @@ fn below_the_pull_off_the_message_says_what_holds() {
     assert_eq!(outcome, Outcome::Converged);
     let least = report.measures.force;
     println!("pull-off {least} at {}, {:.1} work", report.measures.approach, report.count.work_units);
-    // The least of a path of steps .1 in the prototype; the least of all lies below by a parabola of such steps. The contact's edge rests at rings of
-    // elements, so that several states belong to one approach: paths of other steps find -1.66398 to -1.66410.
+    // The least force on the prototype's path of steps of .1. The least of all states is lower by that of a parabola through such steps. The
+    // contact's edge rests at rings of elements, so that one approach has several states: paths of other steps find -1.66398 to -1.66410.
     assert!(least < -1.6641 + 2e-4 && least > -1.6641 - 5e-3, "{least}");
     for factor in [1.05, 3.0, 1e3] {
         match solver::solve(&sphere.scene(Load::Force(factor * least)), &Options::default()) {
@@ -105,7 +105,7 @@ fn a_handle_follows_a_pull_from_step_to_step() {
     }
 }
 
-/// Balls side by side on a grid: radius, and how far the lowest point lies.
+/// Two balls side by side on a grid: for each its radius, and the height of its lowest point.
 fn balls(n: usize, half_width: f64, balls: [(f64, f64); 2]) -> (Grid, Vec<f64>) {
     let d = 2.0 * half_width / n as f64;
     let grid = Grid::new(2 * n, n, d, d).expect("a grid");
@@ -117,7 +117,7 @@ fn balls(n: usize, half_width: f64, balls: [(f64, f64); 2]) -> (Grid, Vec<f64>) 
     (grid, (0..grid.len()).map(h).collect())
 }
 
-// A small ball parts first, and the force rises; the large one then holds more than both did.
+// The small ball parts first, and the force rises. Then the large one alone holds more than both did.
 #[test]
 fn the_least_force_lies_behind_a_minimum_of_less_depth() {
     let (range, options) = (range_of(2.0), Options::default());
@@ -133,12 +133,12 @@ fn the_least_force_lies_behind_a_minimum_of_less_depth() {
     };
     let alone = pull_off([(1.0, 0.0), (1.0, 50.0)]);
     let both = pull_off([(1.0, 0.0), (0.2, 1.2)]);
-    // The small ball attracts as exp(-6) of what it does in contact.
+    // At the pull-off of the large ball the attraction of the small one is exp(-6) of that in contact.
     assert!((both - alone).abs() < 5e-3, "{both} {alone}");
 }
 
-// Seeds 6, 15, 27, 82, 192 and 291 of `campaign --adhesion`, in small: laws that end, surfaces with one high point. A force of 0 leaves such bodies
-// apart, and nothing is there to go down from.
+// Small scenes like seeds 6, 15, 27, 82, 192 and 291 of `campaign --adhesion`: laws of finite range, and a surface with one high point. Bodies apart
+// are also a state of force 0, but no descent can begin there.
 #[test]
 fn pulls_on_what_parts_without_a_load_are_held_or_refused() {
     let grid = Grid::new(16, 13, 1.0, 1.0).expect("a grid");
@@ -168,7 +168,7 @@ fn pulls_on_what_parts_without_a_load_are_held_or_refused() {
     }
 }
 
-/// A sphere of radius 1 on n x n elements within 1 x 1, E* = 1, and the range of a kappa.
+/// A sphere on n x n elements within 1 x 1, E* = 1, and the range for a kappa.
 fn small_sphere(n: usize, radius: f64, (law, work, kappa): (Law, f64, f64)) -> (Grid, Vec<f64>, f64) {
     let d = 1.0 / n as f64;
     let grid = Grid::new(n, n, d, d).expect("a grid");
@@ -177,7 +177,7 @@ fn small_sphere(n: usize, radius: f64, (law, work, kappa): (Law, f64, f64)) -> (
     (grid, h, range_of_kappa(law, work, d, 1.0, kappa))
 }
 
-// Next to the pull-off the unstable equilibrium of a force lies next to the stable one.
+// Near the pull-off the unstable equilibrium of a force is close to the stable one.
 #[test]
 fn just_above_the_pull_off_the_stable_state_is_found() {
     let options = Options::default();
@@ -203,7 +203,7 @@ fn just_above_the_pull_off_the_stable_state_is_found() {
             let told = report.adhesion.and_then(|found| found.stiffness).expect("a stiffness");
             println!("{law:?} {part}: approach {} of {}, {found:?} {told}", report.measures.approach, least.approach);
             assert!(found.stiffness > 0.0 && found.is_least, "{law:?} {part}: {found:?}");
-            // A tangent to 1e-3, and pressures to 1e-6; near the pull-off both are parts of what cancels.
+            // The stiffness has a relative error of 1e-3. Near the pull-off its terms cancel: hence the absolute tolerance.
             assert!((told - found.stiffness).abs() < 5e-3 * found.stiffness + 1e-3, "{law:?} {part}: {told} {found:?}");
             assert!(report.measures.approach > least.approach, "{law:?} {part}");
             let u = displacements(&grid, 1.0, &solver.state().p);
@@ -213,7 +213,7 @@ fn just_above_the_pull_off_the_stable_state_is_found() {
     }
 }
 
-// A small ball stands out beyond a large one. Without a load the small one alone is in contact; the large one holds more, once it is.
+// A small ball stands out beyond a large one. Without a load only the small one is in contact. The large one holds more, once it is in contact.
 #[test]
 fn a_pull_that_only_pressed_bodies_hold_is_held() {
     let (n, options) = (64, Options::default());
@@ -239,7 +239,7 @@ fn a_pull_that_only_pressed_bodies_hold_is_held() {
     let least = report.measures.force;
     println!("pull-off {least}, {:.0} work", report.count.work_units);
     certified(&solver);
-    // Both balls hold some 1.5 to 2 pi w R: 1.5 to 2 for the large one.
+    // Each ball holds some 1.5 to 2 pi w R, the large one 1.5 to 2.
     assert!(outcome == Outcome::Converged && least < -1.0, "{least}");
     let (solver, outcome, held) = solver::solve(&scene(Load::Approach(1.6)), &options).expect("a solve");
     assert!(outcome == Outcome::Converged && held.measures.force < -0.9, "{}", held.measures.force);
@@ -253,7 +253,7 @@ fn a_pull_that_only_pressed_bodies_hold_is_held() {
     }
 }
 
-// A handle goes on from a state by approach to a force that presses: the equilibrium next to it is an unstable one.
+// A handle continues from a state by approach to a force that presses. The nearest equilibrium is unstable.
 #[test]
 fn a_force_that_presses_finds_a_stable_state_too() {
     let n = 9;

@@ -1,4 +1,4 @@
-//! A solve that is refused leaves the last result of a handle: its split into contact pressures and attraction, and its friction.
+//! A refused solve leaves the last result of a handle: its contact pressures, its attraction, and its friction.
 
 use contact_normal::error::Error;
 use contact_normal::influence::Table;
@@ -47,7 +47,7 @@ fn what_is_refused_for_its_friction_leaves_a_result_of_adhesion() {
     let of = |force: f64| {
         let prescribed = [Prescribed::Force(force), Prescribed::Creepage(0.0)];
         let friction = Some(Friction { prescribed, ..Friction::new(0.3) });
-        // Of equal bodies, whose tractions leave the pressures as they are.
+        // Bodies are equal, so that tractions do not change the pressures.
         let bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
         Scene { friction, bodies, ..sphere.scene(Load::Approach(0.1)) }
     };
@@ -61,8 +61,7 @@ fn what_is_refused_for_its_friction_leaves_a_result_of_adhesion() {
     assert_eq!((before, p), (split(&solver), solver.state().p.clone()));
 }
 
-/// A table that is set anew, and coefficients that a refused force takes, leave the split of the result that is there. It became that of a result without
-/// adhesion.
+/// A new table, and coefficients of a refused force, do not change the contact pressures and the attraction of the last result.
 #[test]
 fn other_coefficients_leave_the_split_of_the_pressures() {
     let sphere = Sphere::by_tabor(1.0, 16, 3.0);
@@ -93,7 +92,7 @@ fn other_coefficients_leave_the_split_of_the_pressures() {
     assert_eq!(before, split(&solver));
 }
 
-/// The stiffness of bodies without adhesion is another one.
+/// The stiffness without adhesion does not hold for a result with adhesion, so it is refused.
 #[test]
 fn the_stiffness_of_a_result_of_adhesion_comes_with_it() {
     let sphere = Sphere::by_tabor(1.0, 24, 3.0);
@@ -104,7 +103,7 @@ fn the_stiffness_of_a_result_of_adhesion_comes_with_it() {
     assert!(message.contains("adhesion->stiffness"), "{message}");
 }
 
-/// A way back with hysteresis, step by step: a pull that nothing holds is refused, and the next step is on the same branch.
+/// A way back with hysteresis, step by step: a pull that nothing holds is refused, and the next step stays on the branch.
 #[test]
 fn a_pull_that_is_refused_leaves_the_state_from_which_steps_go_on() {
     let sphere = Sphere::by_tabor(1.0, 24, 3.0);

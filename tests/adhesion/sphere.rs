@@ -9,10 +9,10 @@ use contact_normal::solver::{self, Options, Outcome};
 use super::certificate::{displacements, traction, worst};
 use super::support::{adhesion, bodies, range_of, Found, Sphere, MODULUS};
 
-/// Certificates hold to the tolerance in the library's own units; the test's product adds round-off only.
+/// Certificates hold to the tolerance in the library's own units. The test's product adds round-off only.
 const CERTIFIED: f64 = 2e-6;
 
-// Printed by the prototype (recipes/adhesion/t9.py) to four digits; it differs in nothing but the coarse grids.
+// Printed by the prototype (recipes/adhesion/t9.py) to four digits. It differs in the coarse grids only.
 #[test]
 fn forces_of_tabors_parameters_are_those_of_the_prototype() {
     for (tabor, n, half_width, forces) in [
@@ -25,7 +25,7 @@ fn forces_of_tabors_parameters_are_those_of_the_prototype() {
         for (approach, force) in [1.0, 0.0, -0.5].into_iter().zip(forces) {
             let (_, found) = sphere.solve(Load::Approach(approach));
             println!("Tabor {tabor} approach {approach}: {} products, {:.1} work", found.products, found.work_units);
-            // Half of the last digit, and as much for the tolerance of both.
+            // Half of the last digit, and as much for both tolerances.
             assert!((found.force - force).abs() < 1e-4, "Tabor {tabor}, approach {approach}: {} {force}", found.force);
             assert!(found.products < 80, "{found:?}");
         }
@@ -52,7 +52,8 @@ fn conditions_of_each_law_hold_by_a_direct_sum() {
     }
 }
 
-// Central differences are off by h^2/6 F'', and those of 0.02 and 0.04 together by its fourth power; energies are known to the square of the residual.
+// Central differences have the error h^2/6 F''; those of 0.02 and 0.04 combined have one of fourth order. The error of an energy is the square of the
+// residual.
 #[test]
 fn the_force_is_the_derivative_of_the_energy() {
     let exponential = (Sphere::by_tabor(1.0, 64, 3.0), -0.3);
@@ -72,7 +73,7 @@ fn the_force_is_the_derivative_of_the_energy() {
     }
 }
 
-// Tabor .1 is nearly DMT, whose pull-off is 2: the prototype found 1.951 by steps on this grid, and less by a parabola is not possible by 3 %.
+// Tabor .1 is nearly DMT, whose pull-off is 2. The prototype has 1.951 by steps on this grid.
 #[test]
 fn a_long_range_pulls_off_as_dmt() {
     let sphere = Sphere::by_tabor(0.1, 64, 12.0);
@@ -94,7 +95,7 @@ fn a_work_per_element_that_is_the_same_gives_the_same_bits() {
     assert_eq!(solver.state().p, other.state().p);
 }
 
-// Powers of four: the direct solve of a small grid takes roots of coefficients, which others round differently.
+// Powers of four: the direct solve of a small grid takes square roots of coefficients, and other factors round differently.
 #[test]
 fn powers_of_four_in_the_units_give_the_same_bits() {
     let sphere = Sphere::by_tabor(1.0, 32, 3.0);

@@ -1,4 +1,4 @@
-//! How near a state is to a snap: 1 - lambda, against printed values and against a power iteration of the test's own.
+//! The distance of a state from a snap, 1 - lambda, compared with printed values and with the test's own power iteration.
 
 use contact_normal::adhesion::{Law, Start};
 use contact_normal::grid::Grid;
@@ -19,7 +19,7 @@ fn solved(sphere: &Sphere, approach: f64) -> (Solver, f64, u64) {
     (solver, found, report.count.matrix_products)
 }
 
-// Printed by the prototype (t10.py), Tabor 1 on 64 x 64, with a tolerance of its own of 1e-2.
+// Printed by the prototype (t10.py), Tabor 1 on 64 x 64, with its own tolerance of 1e-2.
 #[test]
 fn lambda_is_that_of_the_prototype() {
     let sphere = Sphere::by_tabor(1.0, 64, 3.0);
@@ -47,7 +47,7 @@ fn lambda_is_the_factor_of_a_power_iteration() {
     }
 }
 
-/// The largest eigenvalue of v -> s A~ v: an attraction v outside, the pressures in C that keep e there, and how the attraction changes.
+/// The largest eigenvalue of v -> s A~ v: the attraction v outside, the pressures in C that keep e there, and the slope s of the attraction.
 fn power_iteration(sphere: &Sphere, solver: &Solver) -> f64 {
     let (state, grid) = (solver.state(), &sphere.grid);
     assert!(sphere.adhesion.law == Law::Exponential);
@@ -99,7 +99,7 @@ fn with_contact_held(sphere: &Sphere, contact: &[bool], v: &[f64]) -> Vec<f64> {
     product(&x).iter().zip(own).map(|(x, own)| x + own).collect()
 }
 
-// Newton's method, which begins in contact or on no coarser grid, ends at a saddle of the energy here, above the one of bodies apart.
+// Here Newton's method from contact, or without coarser grids, ends at a saddle of the energy, above the minimum of bodies apart.
 #[test]
 fn an_approach_finds_a_least_energy() {
     for (n, half, radius, law, work, kappa, part, start) in [

@@ -1,4 +1,4 @@
-//! Spheres in the units of Johnson, Kendall and Roberts, and certificates by products that the library knows nothing of.
+//! Spheres in the units of Johnson, Kendall and Roberts, and certificates by products that do not use the library.
 //!
 //! R = 1, w = 1/pi, E* = 3/4: forces in pi w R, radii in (pi w R^2/K)^(1/3), approaches in (pi^2 w^2 R/K^2)^(1/3), with K = 4/3 E* = 1.
 
@@ -12,13 +12,13 @@ use contact_normal::solver::{self, Options, Outcome, Solver};
 /// E* of the sphere.
 pub const MODULUS: f64 = 0.75;
 
-/// Two bodies of an E*.
+/// Two bodies with a given E*.
 pub fn bodies(modulus: f64) -> Bodies {
-    // 1/E* = (1 - nu)/(2 G) of the one that is not rigid.
+    // 1/E* = (1 - nu)/(2 G) of the elastic body.
     Bodies { shear_modulus: [0.5 * modulus, f64::INFINITY], poisson_ratio: [0.0; 2] }
 }
 
-/// Adhesion of one work.
+/// Adhesion with a uniform work.
 pub fn adhesion(law: Law, work: f64, range: f64) -> Adhesion<'static> {
     let (work, start) = (Work::Uniform(work), Start::Auto);
     Adhesion { law, work, range, start, stiffness: false, stability: false, shear_strength: 0.0 }
@@ -32,7 +32,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// Of n x n elements within a half-width.
+    /// A sphere on n x n elements within a half-width.
     pub fn new(n: usize, half_width: f64, law: Law, range: f64) -> Sphere {
         let d = 2.0 * half_width / n as f64;
         let grid = Grid::new(n, n, d, d).expect("a grid");
@@ -41,7 +41,7 @@ impl Sphere {
         Sphere { grid, h, adhesion: adhesion(law, 1.0 / PI, range) }
     }
 
-    /// With the exponential law, by Tabor's parameter (R w^2/E*^2)^(1/3)/rho.
+    /// A sphere with the exponential law, by Tabor's parameter (R w^2/E*^2)^(1/3)/rho.
     pub fn by_tabor(tabor: f64, n: usize, half_width: f64) -> Sphere {
         Sphere::new(n, half_width, Law::Exponential, range_of(tabor))
     }
@@ -50,7 +50,7 @@ impl Sphere {
         Scene { adhesion: Some(self.adhesion), ..Scene::new(self.grid, &self.h, bodies(MODULUS), load) }
     }
 
-    /// Solved from nothing.
+    /// Solves without a guess.
     pub fn solve(&self, load: Load) -> (Solver, Found) {
         let (solver, outcome, report) = solver::solve(&self.scene(load), &Options::default()).expect("a solve");
         assert_eq!(outcome, Outcome::Converged, "{load:?}");
@@ -59,12 +59,12 @@ impl Sphere {
     }
 }
 
-/// rho of Tabor's parameter.
+/// The range rho for Tabor's parameter.
 pub fn range_of(tabor: f64) -> f64 {
     (1.0 / (PI * MODULUS).powi(2)).cbrt() / tabor
 }
 
-/// What a solve found.
+/// The result of a solve.
 #[derive(Clone, Copy, Debug)]
 pub struct Found {
     pub force: f64,

@@ -1,5 +1,4 @@
-//! The C clients: the header alone, every example with its expected output and a certificate recomputed from what it wrote, a
-//! program in C++11.
+//! The C clients: the header alone, every example with its expected output and a certificate of the solution that it wrote, a program in C++11.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -16,7 +15,7 @@ const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-
 /// The tolerance that the examples set.
 const TOLERANCE: f64 = 1e-9;
 
-/// A compiler with the flags of the house.
+/// A compiler with the warning flags of the repository.
 pub fn compiler(name: &str, standard: &str) -> Command {
     let mut command = Command::new(name);
     command.arg(format!("-std={standard}")).args(WARNINGS).arg("-I").arg(root().join("include"));
@@ -47,7 +46,7 @@ fn check_example(name: &str, arguments: &[&str]) -> Recomputed {
     certificate(&solution)
 }
 
-/// The certificate of a file "mx my dx dy approach", then "h p contact" per element. All examples are of steel on steel.
+/// The certificate of a file "mx my dx dy approach", then "h p contact" per element. All examples have two steel bodies.
 fn certificate(solution: &Path) -> Recomputed {
     let text = std::fs::read_to_string(solution).expect("the file that the example wrote");
     let mut lines = text.lines().map(|line| -> Vec<f64> {
@@ -65,8 +64,8 @@ fn certificate(solution: &Path) -> Recomputed {
     recompute(&grid, &influence, &column(0), head[4], &column(1), &contact)
 }
 
-/// The sum of p dx dy equals the prescribed force to round-off: 1e-12 is some 5000 units in the last place, more than the sum
-/// of n <= 8360 pressures can lose.
+/// The sum of p dx dy equals the prescribed force to round-off: 1e-12 is some 5000 units in the last place, more than the error of a sum of n <= 8360
+/// pressures.
 fn assert_force(found: f64, prescribed: f64) {
     assert!((found - prescribed).abs() <= 1e-12 * prescribed, "force is {found}; prescribed was {prescribed}");
 }
@@ -92,7 +91,7 @@ fn wheel_rail() {
     assert_force(measures.force, prescribed.parse().expect("a force"));
 }
 
-/// What the Python package wrote: heights of a rough surface with holes, and a wheel on a rail.
+/// Files written by the Python package: heights of a rough surface with holes, and a wheel on a rail.
 #[test]
 fn gap() {
     let file = gap_file("ground");
@@ -133,7 +132,7 @@ fn time_steps() {
     assert_force(measures.force, 80000.0 * (1.0 + 0.1 * phase.sin()));
 }
 
-/// Their solutions are compared with closed forms and direct sums in tests of their own.
+/// The other examples. Other tests compare their solutions with closed forms and direct sums.
 #[test]
 fn the_effects() {
     for name in EXAMPLES_OF_EFFECTS {
@@ -160,7 +159,7 @@ fn an_example_fails_with_the_message_of_the_library() {
 #[test]
 fn the_header_alone_is_clean_c99_and_cxx11() {
     let header = root().join("include/contact_normal.h");
-    // As the only include of a source, as a user has it.
+    // The header is the only include of the source, as in a user's program.
     let folder = scratch("header_alone");
     let source = folder.join("header_alone.c");
     std::fs::write(&source, format!("#include \"{}\"\nint main(void) {{ return 0; }}\n", header.display()))

@@ -116,7 +116,7 @@ static void the_ledger_has_a_row_per_grid() {
     expect(rows[4].force == problem.report.normal.force, "the last row holds the result's force");
     expect(rows[4].max_pressure == problem.report.normal.max_pressure, "and its largest pressure");
 
-    // Too little room: the rows of the finest grids, and the number there would have been.
+    // Too little room: the rows of the finest grids are written, and the report has the number of all rows.
     std::vector<contact_normal_ledger_row> few(3);
     few[2].mx = -1;
     contact_normal_ledger_row_init(few.data());

@@ -1,4 +1,4 @@
-// contact_normal.hpp: what its classes promise. Prints one line per check that fails, and the number of checks.
+// contact_normal.hpp: the promises of its classes. Prints one line per check that fails, and the number of checks.
 #include "cxx_expect.hpp"
 
 #include <algorithm>
@@ -48,7 +48,7 @@ static void scenes()
     expect(std::abs(sum - 500.0) < 1e-9 * 500.0, "the pressures add up to the force");
     expect(!found.ledger.empty() && found.ledger.back().mx == GRID.mx, "the ledger ends with the grid of the scene");
 
-    // The plain C call, to the last bit.
+    // The plain C call gives the same bits.
     std::vector<double> p(h.size());
     contact_normal_scene plain = scene.get();
     contact_normal_fields fields;
@@ -56,7 +56,7 @@ static void scenes()
     fields.pressure = p.data();
     expect(contact_normal_solve(&plain, nullptr, &fields, nullptr) == CONTACT_NORMAL_OK && p == found.pressure, "as in C");
 
-    // A copy has effects of its own.
+    // A copy has its own effects.
     cn::scene limited = scene;
     limited.pressure_limit(0.5 * found.report.normal.max_pressure);
     cn::scene copy = limited;
@@ -67,7 +67,7 @@ static void scenes()
     const std::vector<double> compliances(h.size(), 1e-5);
     const double one = cn::solve(cn::scene(scene).layer(1e-5)).report.normal.approach;
     const double many = cn::solve(cn::scene(scene).layer(compliances)).report.normal.approach;
-    // The tolerance is 1e-6, of the residual; without the layer the approach is 40 percent less.
+    // The tolerance of the residual is 1e-6. Without the layer the approach is 40 percent less.
     expect(std::abs(many / one - 1.0) < 1e-5 && one > 1.1 * found.report.normal.approach, "a layer of one number or of many");
     // A coating of the body's own material changes nothing, a soft one does; a copy keeps it.
     const cn::result same = cn::solve(cn::scene(scene).coating(1, 0.1, STEEL));
@@ -98,7 +98,7 @@ static void loads()
     expect(thrown_by([&] { cn::solve(scene); }, "no load: set") == CONTACT_NORMAL_INVALID_ARGUMENT, "a scene needs a load");
     cn::result found;
     expect(cn::solve_into(scene, found) == CONTACT_NORMAL_INVALID_ARGUMENT && found.pressure == std::vector<double>(h.size()), "without exceptions, too");
-    cn::solver solver(scene); // needs none
+    cn::solver solver(scene); // a handle needs no load
     expect(solver.solve_into(scene, found) == CONTACT_NORMAL_INVALID_ARGUMENT, "nor does a handle guess it");
     const double force = solver.solve(scene.approach(0.01)).report.normal.force;
     const double approach = solver.solve(scene.force(force)).report.normal.approach;
@@ -174,13 +174,13 @@ static void frictions()
     bool bounded = true;
     for (std::size_t i = 0; i < h.size(); i++) {
         sum += rolled.traction[0][i] * GRID.dx * GRID.dy, slips += rolled.stick_slip[i] == CONTACT_NORMAL_STICK_SLIP_SLIP;
-        // The lengths are rounded here, not there.
+        // The lengths are rounded here, but not in the library.
         bounded = bounded && std::hypot(rolled.traction[0][i], rolled.traction[1][i]) <= 0.3 * rolled.pressure[i] * (1 + 1e-15);
     }
     expect(bounded, "|q| <= mu p");
     expect(std::abs(sum - rolled.report.tangential.force[0]) < 1e-9 * 150.0 && slips == rolled.report.tangential.slip_count, "the report's force and slip");
 
-    // Coefficients per element; forces given.
+    // Coefficients per element; given forces.
     const std::vector<double> coefficients(h.size(), 0.3);
     const cn::result pushed = cn::solve(cn::scene(scene).friction(cn::friction(coefficients).force(0, 50.0).creepage(1, 0.0)));
     expect(std::abs(pushed.report.tangential.force[0] - 50.0) < 1e-4 * 150.0, "the force given");
@@ -189,13 +189,13 @@ static void frictions()
            "too few coefficients");
     expect(thrown_by([&] { cn::friction(0.3).force(2, 1.0); }, "direction is 2") == CONTACT_NORMAL_INVALID_ARGUMENT, "a third direction");
 
-    // A table: its entries are what single solves find; what is refused is named.
+    // The entries of a table equal single solves. A refused entry is named.
     std::vector<std::array<double, 3>> entries;
     for (int k = 0; k < 20; k++) entries.push_back({creepage[0] * 0.1 * k, creepage[1], spin});
     const cn::scene rolling = cn::scene(scene).friction(moved);
     const cn::friction_table table = cn::friction_batch(rolling, entries);
     expect(static_cast<bool>(table) && table.message.empty() && std::abs(table.report.normal.force - 500.0) < 1e-9 * 500.0, "a table");
-    // A residual of 1e-6 leaves some 1e-7 of mu N.
+    // With a residual of 1e-6 the error is some 1e-7 of mu N.
     expect(std::abs(table.force[10][0] - rolled.report.tangential.force[0]) < 1e-5 * 150.0, "an entry");
     expect(table.creepage[7][0] == entries[7][0] && table.residual[7] <= 1e-6 && table.products[7] > 0.0, "its numbers");
     const cn::friction_table given = cn::friction_batch(rolling, entries, {}, {}, cn::view<double>(rolled.pressure));

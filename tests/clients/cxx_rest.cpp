@@ -1,4 +1,4 @@
-// contact_normal.hpp: what else C has, each called once and compared. Prints one line per check that fails, and the number of checks.
+// contact_normal.hpp: the other functions of C, each called once and compared. Prints one line per check that fails, and the number of checks.
 #include "cxx_expect.hpp"
 
 #include <algorithm>
@@ -59,7 +59,7 @@ static void fields_of_a_result()
     expect(usual.holds(cn::fields::displacement | cn::fields::contact) && !usual.holds(cn::fields::ledger), "the defaults leave the ledger out");
     expect(solver.last().displacement == all.displacement && solver.last().ledger.empty(), "the last result of a handle");
 
-    // A start is read, whatever is asked for.
+    // A start is read, whichever fields are wanted.
     cn::options from_here;
     from_here.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_GIVEN;
     few.pressure = all.pressure;
@@ -95,7 +95,7 @@ static void batches()
                !second.results[2].holds(cn::fields::pressure),
            "and says why");
     expect(second.results[4] && second.results[4].message.empty() && second.results[4].pressure == found.results[4].pressure, "the others are solved");
-    // One contact reaches the border, one is a single element, one is neither.
+    // One contact reaches the border, one is a single element, and one has no warning.
     std::vector<double> alone(h.size(), 1.0);
     alone[static_cast<std::size_t>(std::min_element(h.begin(), h.end()) - h.begin())] = 0.0;
     scenes = {cn::scene(GRID, STEEL).undeformed_distance(h).force(1e6), cn::scene(GRID, STEEL).undeformed_distance(alone).force(1e-3),
@@ -222,7 +222,7 @@ static void frictions()
     };
     expect(rolled_by(1.0 / 6.0) != rolled_by(0.5), "the offset of spin");
 
-    // Own tables that are the half-space's: xx = yy = A of the normal problem is not elastic, but symmetric as it must be.
+    // Own tables with the half-space's normal coefficients: xx = yy = A is not elastic, but symmetric as required.
     const std::vector<double> table = cn::influence_half_space(32, 24, 0.1, 0.1, STEEL, STEEL), none(table.size(), 0.0);
     const cn::friction own = cn::friction(0.3).creepage(0, -1e-4).influence(32, 24, table, table, none);
     const cn::scene with_own = cn::scene(scene).friction(own);
@@ -234,7 +234,7 @@ static void frictions()
     expect(thrown_by([&] { cn::friction(0.3).influence_cross(none, none); }, "call influence first") == CONTACT_NORMAL_INVALID_ARGUMENT, "cross tables alone");
     expect(thrown_by([&] { cn::friction(0.3).influence(32, 24, table, h, none); }, "768 values; it must have 3072") == CONTACT_NORMAL_INVALID_ARGUMENT, "a table of another size");
 
-    // The same coefficients, of each pair of rows.
+    // The same coefficients, for each pair of rows.
     std::vector<double> of_rows, no_rows(24 * 24 * 64, 0.0);
     for (std::size_t k = 0; k < 24 * 24; k++) {
         const auto row = table.begin() + static_cast<std::ptrdiff_t>((24 + k % 24 - k / 24) * 64);
@@ -243,7 +243,7 @@ static void frictions()
     const cn::friction rows = cn::friction(0.3).creepage(0, -1e-4).row_tables(32, 24, of_rows, of_rows, no_rows);
     const cn::result by_rows = cn::solve(cn::scene(scene).friction(rows));
     expect(std::abs(by_rows.report.tangential.force[0] / by_tables.report.tangential.force[0] - 1.0) < 1e-4, "tangential tables per row");
-    // The friction that a scene was given need not live on; a copy of the scene outlives the scene.
+    // The friction of a scene need not outlive the call. A copy of the scene outlives the scene.
     const cn::scene outlives = cn::scene(cn::scene(scene).friction(cn::friction(0.3).creepage(0, -1e-4).row_tables(32, 24, of_rows, of_rows, no_rows)));
     expect(cn::solve(outlives).traction == by_rows.traction, "tables of a temporary friction");
     expect(thrown_by([&] { cn::friction(0.3).row_tables(32, 24, of_rows, h, no_rows); }, "768 values; it must have 36864") == CONTACT_NORMAL_INVALID_ARGUMENT, "tangential row tables of another size");
@@ -255,7 +255,7 @@ static void frictions()
     expect(many.stick_count[0] == found.report.tangential.stick_count && many.slip_count[0] == found.report.tangential.slip_count && many.gap[0] < 1e-5, "its counts");
     expect(many.friction_coefficient.empty() && many.yield_limit.empty(), "and no more");
 
-    // What particles carry after each entry: those of the entry alone.
+    // The state of particles after each entry is that of the entry alone.
     const cn::friction falling = cn::friction(0.4).creepage(0, -2e-4).law(CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL, 0.2, 0.2, 1e-4, 1.0).layer(20.0, 1e5);
     const cn::scene worn = cn::scene(scene).friction(falling);
     const cn::friction_table carried =
@@ -277,7 +277,7 @@ static void stops()
     cn::stop_flag stop;
     cn::options how;
     how.stop_by(stop).tolerance = 1e-12;
-    // Another thread sets it while this one is in its first cycle.
+    // Another thread sets the flag while this one is in its first cycle.
     const cn::result stopped = cn::solve(scene, how, [&](const contact_normal_progress &) {
         std::thread([&] { stop.set(); }).join();
         return false;
@@ -327,7 +327,7 @@ static void the_library()
     expect(kept > 0 && cn::kept().bytes == 0, "what may be kept");
     cn::keep(std::int64_t{512} << 20);
 
-    // (1 - nu)/(G k) of one material, and beyond a thick coating that of the coating.
+    // (1 - nu)/(G k) for one material. With a thick coating it is that of the coating.
     const double steel = (1.0 - 0.28) / (82000.0 * 2.0), rubber = (1.0 - 0.49) / (1.0 * 2.0);
     expect(std::abs(cn::coating_compliance(1.0, STEEL, STEEL, 2.0) / steel - 1.0) < 1e-12, "a coating of the body's own material");
     expect(std::abs(cn::coating_compliance(100.0, RUBBER, {100.0, 0.3}, 2.0) / rubber - 1.0) < 1e-12, "a thick coating");

@@ -1,14 +1,14 @@
-//! The description of the ABI, read from the header that cbindgen makes of src/ffi: constants, structs, callbacks. What the other
-//! languages need of it is made from this (`generated.rs`), and so are the programs that compare layouts.
+//! The description of the ABI, read from the header that cbindgen makes of src/ffi: constants, structs, callbacks. `generated.rs` makes the parts for
+//! the other languages from it, and the programs that compare layouts.
 
-/// A constant: its name without CONTACT_NORMAL_, its value, and what its comment says.
+/// A constant: its name without CONTACT_NORMAL_, its value, and its comment.
 pub struct Constant {
     pub name: String,
     pub value: i64,
     pub comment: String,
 }
 
-/// A type of the header, as far as the languages differ in it.
+/// A type of the header, as far as the languages differ.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     Int32,
@@ -18,14 +18,14 @@ pub enum Kind {
     Struct(String),
     /// A function pointer: a callback of the header.
     Callback(String),
-    /// `T *` or `const T *`; of an unnamed T (void, char, a handle) there is none.
+    /// `T *` or `const T *`; None for an unnamed T (void, char, a handle).
     Pointer(Option<Box<Kind>>),
 }
 
 pub struct Member {
     pub name: String,
     pub kind: Kind,
-    /// An array of so many in the struct.
+    /// The length of an array in the struct.
     pub count: Option<usize>,
 }
 
@@ -36,7 +36,7 @@ pub struct Struct {
 }
 
 impl Struct {
-    /// Its name without the prefix.
+    /// The name without the prefix.
     pub fn short_name(&self) -> &str {
         &self.name["contact_normal_".len()..]
     }
@@ -56,10 +56,10 @@ pub struct Description {
 }
 
 impl Description {
-    /// Reads a header: each comment is followed by what it is about.
+    /// Reads a header: each comment precedes its item.
     pub fn of(header: &str) -> Description {
         let mut found = Description { constants: Vec::new(), structs: Vec::new(), callbacks: Vec::new() };
-        // Callbacks first: members name them.
+        // Callbacks first, because members name them.
         let mut rest = header;
         while let Some((_, after)) = rest.split_once("\n/*\n") {
             let (comment, code) = after.split_once("*/\n").expect("the end of a comment");
@@ -101,7 +101,7 @@ impl Description {
             .collect()
     }
 
-    /// "const double *pressure": its name and what it is.
+    /// "const double *pressure": its name and its kind.
     fn declared(&self, declaration: &str) -> (String, Kind) {
         let start = declaration.rfind([' ', '*']).expect("a type") + 1;
         let (kind, name) = declaration.split_at(start);
@@ -143,7 +143,7 @@ impl Description {
         }
     }
 
-    /// The structs that have a kind, and so an `_init`: each with the end of the name of its constant, and its version.
+    /// The structs that have a kind, and so an `_init`: each with the constant whose name ends in the struct's, and its version.
     pub fn kinds(&self) -> Vec<(&Struct, &Constant)> {
         let of = |name: &str| self.structs.iter().find(|each| each.short_name() == name);
         let kinds = self.constants.iter().filter(|constant| constant.name.starts_with("KIND_"));
@@ -165,7 +165,7 @@ fn one_line(comment: &str) -> String {
 }
 
 impl Constant {
-    /// "0.1" or "0.2": its comment ends with the version that brought it.
+    /// "0.1" or "0.2": the version at the end of the comment.
     pub fn since(&self) -> &str {
         let version = self.comment.rsplit_once("Since ").expect("a version").1;
         version.trim_end_matches('.')

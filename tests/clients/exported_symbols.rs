@@ -1,11 +1,10 @@
-//! The dynamic symbols of the shared library are those of include/exported_symbols.txt, and the header declares each with the
-//! version that it came with.
+//! The dynamic symbols of the shared library are those of include/exported_symbols.txt, and the header declares each with its first version.
 
 use std::process::Command;
 
 use crate::support::{root, run, scratch};
 
-/// The committed list.
+/// The symbols of the committed list.
 fn committed() -> Vec<String> {
     let list =
         std::fs::read_to_string(root().join("include/exported_symbols.txt")).expect("include/exported_symbols.txt");

@@ -1,4 +1,4 @@
-! A progress callback that solves with another handle, and one that calls with the handle in use: the first is served, the second refused.
+! A progress callback that solves with another handle, and one that uses the handle in use: the first call is served, the second refused.
 module of_host
   use, intrinsic :: iso_c_binding
   use contact_normal
@@ -30,7 +30,7 @@ contains
                     0.0_c_double, px, py, igs, sx, sy, 1e-6_c_double, 1000_c_int32_t, err, status, solver=solver, options=how)
   end subroutine
 
-  ! The first time a call within the call.
+  ! Makes one call within the call.
   function calls_within(progress, user) bind(C) result(cancel)
     type(contact_normal_progress), intent(in) :: progress
     type(c_ptr), value :: user
@@ -92,17 +92,17 @@ program fortran_callbacks
   call contact_normal_options_init(options)
   call contact_normal_set_progress(options, calls_within)
 
-  ! Another handle: a step of TANG within a step of TANG.
+  ! With another handle: a step of TANG within a step of TANG.
   call roll_with(ANOTHER)
   call check(inner == CONTACT_NORMAL_OK, 'another handle')
   call contact_normal_solver_free(other)
 
-  ! The normal problem of another handle.
+  ! The normal problem with another handle.
   call check(contact_normal_solver_new(scene, solver=other) == CONTACT_NORMAL_OK, 'a handle')
   call roll_with(A_NORMAL_PROBLEM)
   call check(inner == CONTACT_NORMAL_OK, 'a normal problem')
 
-  ! The handle in use: it is refused, and stays.
+  ! The handle in use is refused, and remains valid.
   in_use = transfer(handle, in_use)
   call roll_with(THE_SAME)
   call check(inner == CONTACT_NORMAL_INVALID_ARGUMENT, 'a handle in use is refused')

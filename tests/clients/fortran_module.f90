@@ -1,5 +1,4 @@
-! The module's calls and wrappers beyond those of the examples: the solver handle, callbacks, messages, the ledger, own
-! coefficients, optional arguments.
+! Calls and wrappers of the module that no example uses: the solver handle, callbacks, messages, the ledger, own coefficients, optional arguments.
 module callbacks
   use, intrinsic :: iso_c_binding
   use contact_normal
@@ -68,7 +67,7 @@ program fortran_module
   call hold(contact_normal_library_abi_version() >= CONTACT_NORMAL_ABI_VERSION, "the ABI's version")
   call hold(contact_normal_status_text(CONTACT_NORMAL_CANCELLED) == "cancelled by a callback or by options->stop", "text")
 
-  ! A structure that has seen no _init is refused, not misread.
+  ! A structure without _init is refused, not misread.
   call hold(contact_normal_solve(scene, fields=fields) == CONTACT_NORMAL_STRUCT_SIZE, "a scene without _init")
   call hold(index(contact_normal_last_error_message(), "contact_normal_scene_init") > 0, "its message")
 
@@ -88,7 +87,7 @@ program fortran_module
   call contact_normal_set_fields(fields, pressure=p, contact=contact, displacement=u, deformed_distance=e)
   call contact_normal_set_ledger(report, ledger)
 
-  ! Options absent: the defaults; then everything.
+  ! Without options: the defaults. Then with all arguments.
   call hold(contact_normal_solve(scene, fields=fields) == CONTACT_NORMAL_OK, "a solve without options and report")
   half_space = p
   call hold(contact_normal_solve(scene, options, fields, report) == CONTACT_NORMAL_OK, "a solve with all of them")
@@ -97,7 +96,7 @@ program fortran_module
   call hold(report%normal%contact_count == count(contact > 0), "the count of elements in contact")
   call hold(report%ledger_rows >= 2 .and. ledger(report%ledger_rows)%mx == M .and. ledger(1)%mx < M, "the ledger")
 
-  ! An accuracy, from the array; then from a surface that cancels at once.
+  ! An accuracy from the array; then with a surface that cancels at once.
   call contact_normal_accuracy_init(accuracy)
   accuracy%target = 1e-2_dp
   call hold(contact_normal_solve_to_accuracy(scene, accuracy=accuracy) == CONTACT_NORMAL_OK, "an accuracy")
@@ -117,7 +116,7 @@ program fortran_module
   call hold(kept == 0, "nothing is kept")
   call hold(contact_normal_has("friction"), "what the library has")
   call hold(.not. contact_normal_has("magnetism"), "what it has not")
-  ! What accuracies cost: the second is dearer; the largest pressure is one of its own.
+  ! The costs of accuracies: the second is more expensive. The largest pressure has its own costs.
   call hold(contact_normal_cost_of_accuracy(scene, [1e-2_dp, 1e-3_dp], prices) == CONTACT_NORMAL_OK, "a price list")
   call hold(all(prices%obstacle == CONTACT_NORMAL_OBSTACLE_NONE .and. prices%seconds > 0 .and. prices%mx > 0), "its rows")
   call hold(prices(2)%mx >= prices(1)%mx .and. prices(2)%tolerance < prices(1)%tolerance, "in order")
@@ -140,7 +139,7 @@ program fortran_module
   half_space = p
   call contact_normal_set_influence(scene, influence, M, M, cf)
   call hold(contact_normal_solve(scene, options, fields) == CONTACT_NORMAL_OK, "the table")
-  ! Residuals of 1e-10, times the condition of A on 24 x 24 elements, below 100.
+  ! Residuals of 1e-10, times the condition number of A on 24 x 24 elements, below 100.
   call hold(all(abs(p - half_space) <= 1e-8_dp*maxval(p)), "the same from the table")
 
   ! A handle for several solves.
@@ -154,7 +153,7 @@ program fortran_module
   call contact_normal_solver_free(solver)
   call hold(contact_normal_solver_solve(solver, scene, options, fields) == CONTACT_NORMAL_NULL_POINTER, "a freed one")
 
-  ! A batch on two threads, one of its problems refused; then the same problems one by one.
+  ! A batch on two threads, with one refused problem; then the same problems one by one.
   options%initial_guess = CONTACT_NORMAL_INITIAL_GUESS_NONE
   options%threads = 2
   call hold(contact_normal_solver_new(scene, options, solver) == CONTACT_NORMAL_OK, "a solver of two threads")
@@ -193,7 +192,7 @@ program fortran_module
   call contact_normal_set_progress(options)
   call hold(contact_normal_solve(scene, options, fields) == CONTACT_NORMAL_OK, "no callback any more")
 
-  ! A message: with a table that is not symmetric V-cycles serve, which diverge with plain Jacobi; so NORM takes over.
+  ! A message: a table that is not symmetric is solved by V-cycles, which diverge with plain Jacobi, so that NORM takes over.
   do i = -M, M - 1
     cf(i, :) = cf(i, :)*(1 + 0.03_dp*i/M)
   end do
@@ -207,7 +206,7 @@ program fortran_module
 
 contains
 
-  ! The entries of a table are what single solves find; one that is refused is named.
+  ! The entries of a table equal single solves. A refused entry is named.
   subroutine table_of_forces()
     integer(c_int32_t), parameter :: n = 3
     type(contact_normal_scene) :: ball
@@ -248,7 +247,7 @@ contains
       friction%creepage = entries(1:2, k)
       friction%spin = entries(3, k)
       call hold(contact_normal_solve(ball, report=one) == CONTACT_NORMAL_OK, "an entry alone")
-      ! A residual of 1e-6 leaves some 1e-7 of mu N.
+      ! With a residual of 1e-6 the error is some 1e-7 of mu N.
       call hold(all(abs(force(:, k) - one%tangential%force) <= 1e-5_dp*300), "the forces of an entry")
       call hold(abs(moment(k) - one%tangential%moment) <= 1e-5_dp*300, "the moment of an entry")
       call hold(abs(sum(traction(:, :, 1, k))*0.01_dp - force(1, k)) <= 1e-9_dp*300, "the tractions of an entry")
@@ -261,7 +260,7 @@ contains
     call hold(all(status == [CONTACT_NORMAL_OK, CONTACT_NORMAL_INFEASIBLE, CONTACT_NORMAL_OK]), "the others are solved")
   end subroutine
 
-  ! A p of the solver's pressures are its displacements, and a larger approach asks for a larger force.
+  ! A p of the solver's pressures equals its displacements. A larger approach needs a larger force.
   subroutine products(solver, mx, my)
     type(contact_normal_solver), intent(in) :: solver
     integer, intent(in) :: mx, my
@@ -280,7 +279,7 @@ contains
     call hold(stiffness > 0 .and. residual >= 0 .and. residual <= 1e-6_c_double, "both of them")
   end subroutine
 
-  ! Options and constants as an input file has them, and a dump.
+  ! Options and constants by name, as in an input file, and a dump.
   subroutine by_name()
     type(contact_normal_options) :: named
     type(contact_normal_cycle) :: cycle_named

@@ -1,5 +1,4 @@
-! What is wrong in a call of a procedure that attaches is said by the next call of the library, and nothing is written
-! elsewhere; arrays may have any bounds.
+! An error in the call of a setter is reported by the next call of the library, and no output is written. Arrays may have any bounds.
 program fortran_setters
   use, intrinsic :: iso_c_binding
   use contact_normal
@@ -83,7 +82,7 @@ program fortran_setters
   call contact_normal_set_tangential_row_tables(friction, three_rows, M, nothing_3, cube, cube)
   call refused("set_tangential_row_tables: xx is not associated")
 
-  ! Of the others that a call takes.
+  ! The other arrays of a call.
   call contact_normal_set_fields(fields, pressure=p, displacement=nothing)
   call refused("set_fields: displacement is not associated")
   call contact_normal_set_friction_fields(fields, traction_x=h, stick_slip=no_integers)
@@ -130,7 +129,7 @@ contains
     status = contact_normal_solve(scene, options, fields, report)
   end function
 
-  ! The solve is refused for this, and everything begins anew.
+  ! The solve is refused with this message. Then the scene begins again.
   subroutine refused(why)
     character(*), intent(in) :: why
     call hold(solved() == CONTACT_NORMAL_INVALID_ARGUMENT, why)
@@ -169,7 +168,7 @@ contains
     call begin()
     call contact_normal_set_coating(scene, -7, coating, 0.1_dp, 8200.0_dp, 0.3_dp)
     call refused("set_coating: body is -7; it must be 1 or 2")
-    ! The first fault is told.
+    ! The message has the first fault.
     call contact_normal_set_coating(scene, 3, coating, 0.1_dp, 8200.0_dp, 0.3_dp)
     call contact_normal_set_layer(scene, no_layer, 1e-5_dp)
     call refused("set_coating: body is 3; it must be 1 or 2")

@@ -1,13 +1,13 @@
-//! What is made from the description of the ABI: the functions `_init` of the header, the constants, types and `_init` of the Fortran
-//! module, the structs of the Python package, what the library finds by name, and the layout of the structs for the tests. Each file is compared with what is made;
-//! `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients generated` writes them anew, after the header.
+//! Files made from the description of the ABI: the `_init` functions of the header, the constants, types and `_init` of the Fortran module, the
+//! structs of the Python package, the names that the library finds, and the layout of the structs for the tests. Each file is compared with the
+//! generated one. `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients generated` writes them again, after the header.
 
 use std::fmt::Write;
 
 use crate::description::{Callback, Description, Kind, Member, Struct};
 use crate::support::root;
 
-/// The functions `_init` of C and C++, which stand at the end of the header: each tells the library the size that its struct has there.
+/// The `_init` functions of C and C++, at the end of the header: each passes the size of its struct to the library.
 pub fn c_inits(described: &Description) -> String {
     let mut text = String::new();
     for (kind, constant) in described.kinds() {
@@ -42,7 +42,7 @@ fn fortran_types(described: &Description) -> String {
     for each in &described.structs {
         writeln!(text, "\n  type, bind(C), public :: {}", each.name).expect("text");
         for member in &each.members {
-            // A struct_size of 0 until _init: such a structure is refused, not misread.
+            // The struct_size is 0 before _init: such a structure is refused, not misread.
             let (kind, zero) = match &member.kind {
                 Kind::Int32 => ("integer(c_int32_t)".to_owned(), " = 0"),
                 Kind::Int64 => ("integer(c_int64_t)".to_owned(), " = 0"),
@@ -80,7 +80,7 @@ fn fortran_inits(described: &Description) -> String {
     text
 }
 
-/// The names of the `_init`, for the part of the module before `contains`.
+/// The names of the `_init` procedures, for the part of the module before `contains`.
 fn fortran_public(described: &Description) -> String {
     let mut text = String::from("\n");
     for (kind, _) in described.kinds() {
@@ -89,7 +89,7 @@ fn fortran_public(described: &Description) -> String {
     text
 }
 
-/// contact_normal_pressure_limit: PressureLimit.
+/// The Python name: contact_normal_pressure_limit is PressureLimit.
 fn python_name(name: &str) -> String {
     let words = name.trim_start_matches("contact_normal_").split('_');
     words.map(|word| word[..1].to_uppercase() + &word[1..]).collect()
@@ -119,7 +119,7 @@ fn python_struct(text: &mut String, each: &Struct) {
 
 fn python_callback(text: &mut String, each: &Callback) {
     let argument = |(name, kind): &(String, Kind)| match name.as_str() {
-        // The only text.
+        // The only argument of type text.
         "message" => "c_char_p".into(),
         _ => python_kind(kind),
     };
@@ -138,7 +138,7 @@ from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_v
     .to_owned();
     let mut callbacks: Vec<&Callback> = described.callbacks.iter().collect();
     for each in &described.structs {
-        // A callback before the first struct that has it.
+        // A callback precedes the first struct that has it as a member.
         let has = |callback: &&Callback| {
             each.members.iter().any(|member| member.kind == Kind::Callback(callback.name.clone()))
         };
@@ -169,13 +169,13 @@ fn members(described: &Description, each: &Struct) -> Vec<String> {
     each.members.iter().flat_map(of).collect()
 }
 
-/// The structs of calls that `options->dump` writes; a dump holds these, and those that they point to.
+/// The structs of calls that `options->dump` writes. A dump also holds the structs that they point to.
 const DUMPED: [&str; 8] =
     ["scene", "options", "fields", "report", "accuracy", "price", "friction_results", "stress_outputs"];
 
 /// The structs that a dump may hold, in their order in the header.
 fn dumped(described: &Description) -> Vec<&Struct> {
-    // A struct that points to another stands behind it.
+    // In the header a struct that points to another stands after it.
     let mut found: Vec<&Struct> = Vec::new();
     for each in described.structs.iter().rev() {
         let pointer = Kind::Pointer(Some(Box::new(Kind::Struct(each.name.clone()))));
@@ -188,7 +188,7 @@ fn dumped(described: &Description) -> Vec<&Struct> {
     found
 }
 
-/// Adds these items to the text, as many a line as it holds.
+/// Adds these items to the text, with as many per line as fit.
 fn fill(text: &mut String, indent: &str, items: impl Iterator<Item = String>) {
     let mut line = indent.to_owned();
     for item in items {

@@ -1,11 +1,10 @@
-//! A host keeps what is its own: floating-point environment, standard output and error, and its right to fork.
+//! The library does not change the host: its floating-point environment, its standard output and error, and its ability to fork.
 
 use std::process::Command;
 
 use crate::support::{root, run, run_linked, scratch};
 
-/// Compiles tests/clients/host_environment.c and runs one of its parts, which must succeed and print nothing (`run` refuses a word on
-/// stderr).
+/// Compiles tests/clients/host_environment.c and runs one of its parts, which must succeed and print nothing (`run` also refuses output on stderr).
 fn host(part: &str) {
     let folder = scratch(&format!("host_{part}"));
     let program = folder.join("host_environment");
@@ -36,7 +35,7 @@ fn nothing_is_printed_when_a_call_is_refused() {
     host("silent");
 }
 
-/// Compiles tests/clients/host_threads.c as hosts are that want speed, and runs one of its parts.
+/// Compiles tests/clients/host_threads.c with optimisation, as fast hosts are, and runs one of its parts.
 fn host_with_threads(part: &str) {
     let folder = scratch(&format!("host_threads_{part}"));
     let program = folder.join("host_threads");

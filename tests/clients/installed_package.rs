@@ -1,6 +1,5 @@
-//! `make install` gives what pkg-config says: a program compiled with its flags runs, with the shared and with the static
-//! library, the version is the same wherever it stands, and `make uninstall` leaves nothing. `make package-test` goes further:
-//! CMake, fpm, the wheel.
+//! `make install` agrees with pkg-config: a program compiled with its flags runs, with the shared and with the static library, the version is the
+//! same everywhere, and `make uninstall` leaves no file. `make package-test` also tests CMake, fpm and the wheel.
 
 use std::path::Path;
 use std::process::Command;
@@ -28,13 +27,13 @@ int main(void)
 }
 "#;
 
-/// `make` of a target with these variables, without the job server of a make that may run these tests.
+/// Runs `make` for a target with these variables, without the job server of a make that may run these tests.
 fn make(target: &str, variables: &[String]) {
     let mut make = Command::new("make");
     run(make.env_remove("MAKEFLAGS").arg("-C").arg(root()).arg(target).args(variables));
 }
 
-/// The same for the library that `cargo test` has built beside the test programs, not a second build.
+/// Runs `make` with the library that `cargo test` has built beside the test programs, without a second build.
 fn make_built(target: &str, variables: &[String]) {
     let built = std::env::current_exe().expect("this test's path").parent().expect("its folder").to_owned();
     let built = [
@@ -52,14 +51,14 @@ fn files(folder: &Path) -> Vec<String> {
     found
 }
 
-/// `pkg-config` on the installed package; what it says, split at blanks.
+/// Runs `pkg-config` on the installed package; returns its output, split at blanks.
 fn pkg_config(prefix: &Path, arguments: &[&str]) -> Vec<String> {
     let mut command = Command::new("pkg-config");
     command.args(arguments).arg("contact-normal").env("PKG_CONFIG_PATH", prefix.join("lib/pkgconfig"));
     run(&mut command).split_whitespace().map(str::to_owned).collect()
 }
 
-/// Every name of the shared library, and the headers as they are.
+/// Asserts that the shared library has all its names, and that the headers are copies.
 fn has_links_and_headers(prefix: &Path, version: &str) {
     let links = [
         ("libcontact_normal.so", format!("libcontact_normal.so.{version}")),
@@ -92,7 +91,7 @@ fn the_installed_package_is_what_pkg_config_says() {
     assert_eq!(pkg_config(&prefix, &["--modversion"]), [version]);
     has_links_and_headers(&prefix, version);
 
-    // It runs from there; without a file it says how it is used.
+    // The replay program runs from the prefix. Without a file it prints its usage.
     let replay = Command::new(prefix.join("bin/contact-normal-replay")).output().expect("the program");
     assert!(String::from_utf8_lossy(&replay.stderr).starts_with("usage: contact-normal-replay FILE"));
 
@@ -103,7 +102,7 @@ fn the_installed_package_is_what_pkg_config_says() {
         let mut gcc = Command::new("gcc");
         gcc.args(["-std=c99", "-Wall", "-o"]).arg(&program).arg(&source).args(&flags);
         if flags.iter().any(|flag| flag == "-static") {
-            // The linker warns of what glibc can only do shared; nothing of it is called.
+            // The linker warns of functions that glibc has in its shared form only; none is called.
             assert!(gcc.output().expect("gcc").status.success());
         } else {
             run(&mut gcc);
@@ -117,11 +116,11 @@ fn the_installed_package_is_what_pkg_config_says() {
     assert!(dynamic.contains("Shared library: [libcontact_normal.so.2]"), "{dynamic}");
     assert_eq!(run(Command::new(&shared).env("LD_LIBRARY_PATH", prefix.join("lib"))), expected);
 
-    // Without debug information.
+    // The library has no debug information.
     let sections = run(Command::new("readelf").args(["-SW"]).arg(prefix.join("lib/libcontact_normal.so")));
     assert!(sections.contains(".dynsym") && !sections.contains(".debug_info"), "{sections}");
 
-    // The flags of --static take the static library though the shared one is there; with -static everything is.
+    // The flags of --static link the static library, although the shared one exists; with -static all libraries are static.
     for (name, more) in [("static", None), ("all_static", Some("-static"))] {
         let flags = pkg_config(&prefix, &["--static", "--cflags", "--libs"]);
         let fixed = compile(name, more.map(str::to_owned).into_iter().chain(flags).collect());
@@ -131,7 +130,7 @@ fn the_installed_package_is_what_pkg_config_says() {
     }
 }
 
-/// A packager's staging folder takes the files, and leaves no trace in them. Its library folder is below or beside the prefix.
+/// A packager's staging folder receives the files, and no file names it. The library folder is below or beside the prefix.
 #[test]
 fn a_packager_chooses_the_folders() {
     let version = env!("CARGO_PKG_VERSION");
@@ -157,13 +156,13 @@ fn a_packager_chooses_the_folders() {
         let sections = run(Command::new("readelf").args(["-SW"]).arg(staged.join(real)));
         assert!(sections.contains(".gnu_debuglink") && !sections.contains(".debug_info"), "{sections}");
         cmake_finds(&staged.join(libraries), &staged.join("opt/contact"));
-        // Nothing is left of it but empty folders.
+        // Only empty folders are left.
         make_built("uninstall", &variables);
         assert_eq!(files(&staged), [""; 0]);
     }
 }
 
-/// An installation that is meant to be moved: pkg-config names the folder where it is now.
+/// A relocatable installation: pkg-config names the folder in which it is now.
 #[test]
 fn an_archive_is_unpacked_anywhere() {
     let folder = scratch("moved_package");
@@ -180,7 +179,7 @@ fn an_archive_is_unpacked_anywhere() {
     cmake_finds(&moved.join("lib"), &moved);
 }
 
-/// Variables that do not go together are refused before anything is written.
+/// Variables that exclude each other are refused before any file is written.
 #[test]
 fn variables_that_do_not_go_together_are_refused() {
     for (variables, says) in [
@@ -195,10 +194,10 @@ fn variables_that_do_not_go_together_are_refused() {
     }
 }
 
-/// CMake's file, where nothing was moved: it names the library in this folder and the headers in that prefix.
+/// CMake's file of an installation that was not moved: it names the library in this folder and the headers in that prefix.
 fn cmake_finds(libraries: &Path, prefix: &Path) {
     let script = libraries.join("found.cmake");
-    // A script has no targets: what they would be given is printed.
+    // A script has no targets: their properties are printed instead.
     let text = format!(
         "cmake_minimum_required(VERSION 3.10)\nmacro(add_library)\nendmacro()\nmacro(set_target_properties)\nmessage(\"${{ARGN}}\")\nendmacro()\n\
          macro(get_property)\nendmacro()\ninclude({}/cmake/contact-normal/contact-normal-config.cmake)\n",
@@ -216,7 +215,7 @@ fn cmake_finds(libraries: &Path, prefix: &Path) {
     assert!(told.contains(&format!("INTERFACE_INCLUDE_DIRECTORIES;{}", include.display())), "{told}");
 }
 
-/// Files of other systems by their names: what cargo builds there is installed under the names that programs there look for.
+/// The names of files on other systems: the files of cargo are installed under the names that programs use there.
 #[test]
 fn other_systems_have_their_own_names() {
     let folder = scratch("other_systems");

@@ -1,5 +1,5 @@
-//! Every struct is laid out alike in Rust, C, Fortran and Python. The programs that print the layouts are made from the description of
-//! the ABI, so that none of its structs and members is left out.
+//! Every struct has the same layout in Rust, C, Fortran and Python. The programs that print the layouts are made from the description of the ABI, so
+//! that they have all structs and members.
 
 use std::fmt::Write;
 use std::path::Path;

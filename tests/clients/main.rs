@@ -1,4 +1,4 @@
-//! The library as C, C++, Fortran and Python programs use it: header, symbols, the installed package, clients, hosts.
+//! The library in C, C++, Fortran and Python programs: header, symbols, the installed package, clients, hosts.
 
 mod c;
 mod cxx;

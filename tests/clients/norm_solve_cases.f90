@@ -1,6 +1,6 @@
-! norm_solve against an independent dense solution (norm_solve_dense.f90), and its promises about
-! estimates, codes, garbage and refusals. Prints one line per case that holds; stops at the first that does not.
-! Compiled also with -ffast-math and with floating-point traps, so it never computes with the NaNs that it hands over.
+! norm_solve against an independent dense solution (norm_solve_dense.f90), and its promises about estimates, codes, garbage and refusals. Prints one
+! line per case that holds, and stops at the first one that does not. It is also compiled with -ffast-math and with floating-point traps, so it never
+! computes with the NaNs that it passes.
 include 'norm_solve_dense.f90'
 
 program norm_solve_cases
@@ -37,7 +37,7 @@ contains
     call both_loads("one element in contact", of)
     found = solved(of, 0, of%pen)
     call hold(count(found%igs > 0) == 1 .and. found%igs(3, 8) == 1, "one element in contact: the case")
-    ! Excluded elements, in the middle too.
+    ! Excluded elements, also in the middle.
     of = paraboloid(14, 12, 1.0_dp, 1.0_dp, 1)
     of%hs(7, 6) = 1e20_dp
     of%hs(1:3, :) = 3e25_dp
@@ -95,7 +95,7 @@ contains
     call nothing("no contact, approach, from an estimate", solved(of, 0, -1.0_dp, start))
     call nothing("no contact, force", solved(of, 1, 0.0_dp))
     call nothing("no contact, force, from an estimate", solved(of, 1, 0.0_dp, start))
-    ! The bodies touch, with nothing to carry: contact without pressure, or none.
+    ! The bodies touch with a force of 0: contact without pressure, or no contact.
     found = solved(of, 0, minval(of%hs))
     call hold(found%ierror == 0 .and. all(abs(found%ps) <= 0) .and. abs(found%err) <= 0, "touching")
     print '(a)', "touching"
@@ -122,7 +122,7 @@ contains
     exact = dense(of, 0, of%pen)
     do norm = 0, 1
       found = solved(of, norm, merge(exact%pen, exact%fn, norm == 0))
-      ! From its own solution, with codes in it. One iteration finds that nothing is left to do; a second one at most.
+      ! A start from its own solution, with codes in it. One iteration finds that nothing is left to do, or a second one at most.
       start = found
       where (start%igs > 0) start%igs = 2
       start%igs(12, 10) = 3
@@ -131,7 +131,7 @@ contains
       call hold(found%itcg <= 2, "restart: iterations")
       call hold(found%igs(12, 10) == 3 .and. all(found%igs == start%igs), "restart: codes")
       print '(a, i0)', "a restart from the solution, norm ", norm
-      ! From a contact area that is too small on one side and too large on the other; garbage where igs is 0.
+      ! A start from a contact area that is too small on one side and too large on the other, with garbage where igs is 0.
       start%ps = not_a_number()
       start%igs = 0
       start%igs(11:24, :) = 2
@@ -144,7 +144,7 @@ contains
       call hold(any(found%igs == 1) .and. any(found%igs == 2) .and. found%igs(12, 10) == 3, "estimate: the case")
       print '(a, i0)', "codes of an estimate are kept, new elements get 1, norm ", norm
     end do
-    ! An estimate without any element that can be in contact.
+    ! An estimate whose elements cannot be in contact.
     of%hs(1:2, :) = 1e20_dp
     exact = dense(of, 0, of%pen)
     start%igs = 0
@@ -227,7 +227,7 @@ contains
 
 end program norm_solve_cases
 
-! A code that knows neither the module nor an interface.
+! A code without the module and without an interface.
 subroutine old_code(mx, my, dx, dy, cx, cy, cf, hs, pen, fn, igs, ps, eps, itcg, err, ierror)
   implicit none
   integer :: mx, my, cx, cy, igs(*), itcg, ierror, i

@@ -1,5 +1,4 @@
-! Problems for norm_solve and an independent dense solution of them: Gaussian elimination inside an active set. Included by the
-! programs beside it.
+! Problems for norm_solve, and their independent dense solution by Gaussian elimination inside an active set. Included by the programs beside it.
 module cases
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t, c_int64_t
   use contact_normal
@@ -8,7 +7,7 @@ module cases
   real(dp), parameter :: EPS = 1e-9_dp
   real(dp), parameter :: SHEAR_MODULUS(2) = 0.5_dp, POISSON_RATIO(2) = 0.25_dp
 
-  ! One problem with its table, which `reach` times the grid covers.
+  ! A problem with its table, which covers `reach` times the grid.
   type problem
     integer(ip) :: mx, my, cx, cy
     real(dp) :: dx, dy, pen
@@ -24,7 +23,7 @@ module cases
 
 contains
 
-  ! A NaN that no operation has made.
+  ! A NaN that is made from its bits, without a floating-point operation.
   function not_a_number() result(value)
     real(dp) :: value
     value = transfer(int(z'7FF8000000000000', c_int64_t), value)
@@ -54,7 +53,7 @@ contains
     x = (2*i - m - 1)/real(m, dp)
   end function
 
-  ! By norm_solve, from an empty estimate or from `start`.
+  ! Solves by norm_solve, from an empty estimate or from `start`.
   function solved(of, norm, load, start, maxit) result(found)
     type(problem), intent(in) :: of
     integer(ip), intent(in) :: norm
@@ -92,7 +91,7 @@ contains
     end do
   end function
 
-  ! The same by elimination: bordered by the condition of force if norm is 1. `by` is A, if it is not that of the table.
+  ! Solves by elimination, bordered by the condition of the force if norm is 1. `by` is A, if it is not that of the table.
   function dense(of, norm, load, by) result(found)
     type(problem), intent(in) :: of
     integer(ip), intent(in) :: norm
@@ -169,8 +168,8 @@ contains
     end do
   end subroutine
 
-  ! The iteration stops at an rms update of EPS rms(p). If errors fall to 0.9 or less in an iteration, what is left is
-  ! at most 10 updates, and in one element at most sqrt(n) times the rms.
+  ! The iteration stops at an rms update of EPS rms(p). If errors fall to 0.9 or less in an iteration, the remaining error is at most 10 updates, and
+  ! in one element at most sqrt(n) times the rms.
   function pressure_tolerance(of, exact) result(tolerance)
     type(problem), intent(in) :: of
     type(answer), intent(in) :: exact
@@ -178,7 +177,7 @@ contains
     tolerance = 10*sqrt(real(of%mx, dp)*of%my)*EPS*maxval(exact%ps)
   end function
 
-  ! Errors of p times the area, and times the largest row sum of A: those of the force and of hs + A p, so of pen.
+  ! Errors of p times the area are those of the force. Times the largest row sum of A they are those of hs + A p, and so of pen.
   subroutine agree(name, of, found, exact)
     character(*), intent(in) :: name
     type(problem), intent(in) :: of
@@ -196,7 +195,7 @@ contains
     call hold(found%err <= EPS*maxval(found%ps), name//": err")
   end subroutine
 
-  ! Given approach and given force, both from an empty estimate, against the dense solution and so against each other.
+  ! Given approach and given force, both from an empty estimate, agree with the dense solution, and so with each other.
   subroutine both_loads(name, of)
     character(*), intent(in) :: name
     type(problem), intent(in) :: of

@@ -1,5 +1,5 @@
-! The optional arguments of norm_solve against the dense solution: scale, layer, diag, patches and factors; and a handle that is kept
-! between calls. Prints one line per case that holds; stops at the first that does not.
+! The optional arguments of norm_solve against the dense solution: scale, layer, diag, patches and factors; and a handle that is kept between calls.
+! Prints one line per case that holds, and stops at the first one that does not.
 include 'norm_solve_dense.f90'
 
 program norm_solve_options
@@ -92,7 +92,7 @@ contains
     do norm = 0, 1
       load = merge(of%pen, exact%fn, norm == 0)
       found = found_by(norm, load, scale, layer, diag, patches, factors)
-      ! agree() takes the row sum of the table for the error of the approach: the scales and diagonals here are at most 5 times it.
+      ! agree() uses the row sum of the table for the error of the approach. The scales and diagonals here are at most 5 times it.
       call agree(name, of, found, exact)
       kept = found_by(norm, load, scale, layer, diag, patches, factors, solver)
       call same(name, found, kept)
@@ -133,7 +133,7 @@ contains
     call hold(index(contact_normal_last_error_message(), named) > 0, what//": message")
   end subroutine
 
-  ! A handle that was set up for something else is set up anew; one that refuses a call works afterwards.
+  ! A handle of another set-up is set up again. A handle that refuses a call works afterwards.
   subroutine handles()
     type(contact_normal_solver) :: solver
     type(answer) :: one, other

@@ -1,4 +1,4 @@
-//! The Python package: its constants and prototypes are those of the header.
+//! The constants and prototypes of the Python package are those of the header.
 
 use crate::generated::header;
 use crate::python::python_in;

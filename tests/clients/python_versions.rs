@@ -1,4 +1,4 @@
-//! What differs from one version of Python to the next.
+//! Differences between the versions of Python.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::python::in_folder;
 use crate::support::{finished, root, scratch};
 
-/// How signals are handled, and what is pickled, differs from one version of Python to the next: on each that has numpy.
+/// Signals and pickles differ between versions of Python. The test runs on each version that has numpy.
 #[test]
 fn signals_and_pickles_work_on_every_python_there_is() {
     let folder = scratch("every_python");

@@ -25,7 +25,7 @@ fn commands(readme: &str) -> String {
     script
 }
 
-/// A copy of the project as far as the commands need it, where the library of these tests stands as that of a release would.
+/// A copy of the project as far as the commands need it, with the library of these tests in place of that of a release.
 fn project(folder: &Path) {
     let release = folder.join("target/release");
     let out = release.join("build/contact-normal-0/out");
@@ -59,7 +59,7 @@ fn the_commands_of_the_examples_work_as_printed() {
     }
 }
 
-/// The link that the build of these tests has made: beside the library, if it stands where cargo puts it.
+/// The build of these tests makes this link beside the library, if cargo has put the library at its usual place.
 #[test]
 fn the_build_links_the_soname() {
     let test = std::env::current_exe().expect("this test's path");
@@ -68,7 +68,7 @@ fn the_build_links_the_soname() {
     assert_eq!(link, Path::new("libcontact_normal.so"));
 }
 
-/// Anywhere else there is none, and no error.
+/// At another place there is no link, and no error.
 #[test]
 fn a_build_that_is_laid_out_otherwise_has_no_link() {
     let folder = scratch("no_soname");

@@ -1,5 +1,5 @@
-//! Since which version there is what: the comment of each function of the header, and of each procedure of the Fortran module, ends with the
-//! version that brought it, and the reference of the site repeats that. names_of_0.1.txt has what 0.1 had.
+//! First versions: the comment of each function of the header, and of each procedure of the Fortran module, ends with its first version. The
+//! reference of the site repeats it. names_of_0.1.txt has the names of 0.1.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,7 +20,7 @@ fn since(comment: &str) -> String {
     version.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect::<String>().trim_end_matches('.').to_owned()
 }
 
-/// Functions of the header, `_init` too, each with its version.
+/// The functions of the header, with those of `_init`, each with its version.
 fn of_c() -> BTreeMap<String, String> {
     let header = header();
     let mut found = BTreeMap::new();
@@ -37,7 +37,7 @@ fn of_c() -> BTreeMap<String, String> {
     found
 }
 
-/// Public procedures and callbacks of the module, each with its version.
+/// The public procedures and callbacks of the module, each with its version.
 fn of_fortran() -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     for file in std::fs::read_dir(root().join("include")).expect("include/") {
@@ -56,7 +56,7 @@ fn of_fortran() -> BTreeMap<String, String> {
             if let Some((name, _)) = code.and_then(|code| code.split_once('(')) {
                 let is_public = name.starts_with("contact_normal_") || ["norm_solve", "tang_solve"].contains(&name);
                 if is_public {
-                    // What came later, as optional arguments, stands in parentheses there: "(since 0.2)".
+                    // Later additions, as optional arguments, stand in parentheses: "(since 0.2)".
                     found.insert(name.to_owned(), since(&comment));
                 }
             }

@@ -1,5 +1,5 @@
-//! What the tests of the C, C++, Fortran and Python clients share: the library as a user links it, a scratch folder, and a
-//! certificate recomputed from the arrays that a client wrote.
+//! Shared by the tests of the C, C++, Fortran and Python clients: the library as a user links it, a scratch folder, and a certificate recomputed from
+//! the arrays that a client wrote.
 #![allow(dead_code)] // each test uses its part
 
 use std::os::unix::process::CommandExt;
@@ -13,7 +13,7 @@ use contact_normal::influence::Coefficients;
 use contact_normal::operator::Operator;
 use contact_normal::threads::Threads;
 
-/// The examples of effects, the same in C and Fortran; each prints what its file `.expected` holds.
+/// The examples of effects, which C and Fortran share. Each prints the text of its file `.expected`.
 pub const EXAMPLES_OF_EFFECTS: [&str; 15] = [
     "adhesion",
     "laws",
@@ -51,7 +51,7 @@ pub fn scratch(test: &str) -> PathBuf {
     folder
 }
 
-/// What a program may take: several times as long as the slowest one, under valgrind on a busy machine. One that hangs then fails.
+/// The time limit of a program: several times that of the slowest one, under valgrind on a busy machine. A program that hangs fails by it.
 const PATIENCE: Duration = Duration::from_secs(600);
 
 /// Runs a program to its end.
@@ -59,7 +59,7 @@ pub fn finished(command: &mut Command) -> Output {
     finished_within(PATIENCE, command)
 }
 
-/// Runs a program to its end, or aborts it and all that it started: a Python then tells on stderr where its threads stand.
+/// Runs a program to its end, or aborts it and all processes that it started. An aborted Python prints the stacks of its threads on stderr.
 fn finished_within(patience: Duration, command: &mut Command) -> Output {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).process_group(0);
     let program = command.spawn().unwrap_or_else(|e| panic!("{command:?}: {e}"));
@@ -101,9 +101,8 @@ pub fn run_linked(program: &Path, arguments: &[&str], folder: &Path) -> String {
     run(Command::new(program).args(arguments).env("LD_LIBRARY_PATH", folder).current_dir(folder))
 }
 
-/// Runs a program that was linked with the library in `folder` under valgrind: no error, and nothing definitely lost. What is still
-/// reachable, or possibly lost, the run-time library of Fortran keeps for its units, and the library's threads for their transforms.
-/// Returns what it printed.
+/// Runs a program that was linked with the library in `folder` under valgrind: no error, and no memory definitely lost. The run-time library of
+/// Fortran keeps memory for its units, and the library's threads for their transforms: it is still reachable, or possibly lost. Returns the output.
 pub fn run_under_valgrind(program: &Path, arguments: &[&str], folder: &Path) -> String {
     assert!(
         Command::new("valgrind").arg("--version").output().is_ok(),
@@ -115,7 +114,7 @@ pub fn run_under_valgrind(program: &Path, arguments: &[&str], folder: &Path) -> 
     run(valgrind.arg(program).args(arguments).env("LD_LIBRARY_PATH", without_lines()).current_dir(folder))
 }
 
-/// The library without the lines of its source, which valgrind reads for seconds at each start. The names of functions are still there.
+/// The library without its line numbers, which valgrind takes seconds to read at each start. The names of functions remain.
 fn without_lines() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {

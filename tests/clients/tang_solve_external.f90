@@ -1,4 +1,4 @@
-! tang_solve from a code that knows neither the module nor an interface, beside that of the module.
+! tang_solve from a code without the module and without an interface, compared with that of the module.
 program tang_solve_external
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
   use contact_normal, only: tang_solve
@@ -49,7 +49,7 @@ program tang_solve_external
 
 contains
 
-  ! An element that sticks: (a + layer) q = -xi. The layer: none, one compliance, or one per element.
+  ! An element that sticks: (a + layer) q = -xi. The layer has no compliance, a uniform one, or one per element.
   function traction_by(compliance, compliances) result(found)
     real(dp), intent(in), optional :: compliance, compliances(1, 1)
     real(dp) :: found, xi, eta, fx, fy, px(1, 1), py(1, 1), sx(1, 1), sy(1, 1), err
@@ -72,7 +72,7 @@ contains
     if (abs(XI/traction_by(compliances=one(LAYER)) - XI/bare - LAYER) > 1e-6_dp*LAYER) error stop "one compliance per element"
   end subroutine
 
-  ! The force is the weight times q dx dy and stays as it is; the creepage moves the element by its weight.
+  ! The force is the sum of weight times q dx dy and does not change. The creepage moves the element by its weight.
   subroutine one_element_by_its_weights()
     real(dp) :: xi, eta, fx, fy, px(1, 1), py(1, 1), sx(1, 1), sy(1, 1), err, a
     integer(c_int32_t) :: code(1, 1), status

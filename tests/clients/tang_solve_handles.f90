@@ -1,5 +1,5 @@
-! norm_solve and tang_solve, with tables and without, in any order with one handle: each call finds what it finds without one. Tables with an odd
-! count of columns are refused.
+! norm_solve and tang_solve, with tables and without, in any order with one handle: each call has the result of a call without a handle. Tables with
+! an odd number of columns are refused.
 program tang_solve_handles
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t, c_int64_t
   use contact_normal
@@ -22,7 +22,7 @@ program tang_solve_handles
   do first = NORM, TANG_BY_TABLES
     call find(first, alone(:, :, first))
   end do
-  ! Each of the calls after each of them.
+  ! Each call after each other one.
   do first = NORM, TANG_BY_TABLES
     do second = NORM, TANG_BY_TABLES
       call check(first)
@@ -45,7 +45,7 @@ contains
     end if
   end subroutine
 
-  ! Pressures, or tractions in x by these pressures.
+  ! Finds the pressures, or the tractions in x for these pressures.
   subroutine find(kind, found, kept)
     integer(c_int32_t), intent(in) :: kind
     real(dp), intent(out) :: found(M, M)

@@ -1,5 +1,5 @@
-//! Tables of tangential forces: each entry is what a solve of its own finds, whatever the number of workers; one that fails harms no
-//! other; progress and cancelling.
+//! Tables of tangential forces: each entry equals a single solve, for any number of workers. An entry that fails does not affect the others. Calls
+//! have progress and may be cancelled.
 
 use std::sync::Mutex;
 
@@ -30,7 +30,7 @@ fn scene<'a>(h: &'a [f64], friction: Friction<'a>) -> Scene<'a> {
     Scene { friction: Some(friction), ..Scene::new(grid, h, BODIES, Load::Force(1000.0)) }
 }
 
-/// Of a motion or forces; three runs of entries, the last one not full.
+/// Entries with creepages or forces: three runs, of which the last one is not full.
 fn table(friction: &Friction<'_>) -> Vec<Entry> {
     let unit = |k: usize| match (friction.motion, friction.prescribed[k]) {
         (_, Prescribed::Force(_)) => 80.0,
@@ -63,7 +63,7 @@ fn options(threads: usize) -> Options {
 
 type Found = (Ended, Option<Vec<Vector>>);
 
-/// All entries, in their order.
+/// The results of all entries, in order.
 fn batch(
     scene: &Scene<'_>,
     pressure: Option<&[f64]>,
@@ -115,7 +115,7 @@ fn each_entry_is_what_a_solve_of_its_own_finds() {
             for k in 0..2 {
                 let off = (found.force[k] - single.force[k]).abs();
                 assert!(off <= 1e-5 * all, "{entry:?}: {:?} {:?}", found.force, single.force);
-                // Of the rigid slip, at the rim.
+                // The scale is the rigid slip at the rim.
                 let scale = single.creepage[0].hypot(single.creepage[1]) + entry.spin * 0.45 * M as f64 * D;
                 assert!((found.creepage[k] - single.creepage[k]).abs() <= 1e-4 * scale, "{entry:?}");
             }
@@ -181,7 +181,7 @@ fn an_entry_that_is_refused_harms_no_other() {
     let (p, h) = (pressure(), vec![0.0; M * M]);
     let friction = frictions()[1];
     let mut entries = table(&friction);
-    // More than friction carries; and no number.
+    // One force exceeds the friction bound, and one spin is NaN.
     entries[3].amount[0] = 1e6;
     entries[RUN].spin = f64::NAN;
     let (_, found) = batch(&scene(&h, friction), Some(&p), &entries, &options(2), None);
@@ -237,7 +237,7 @@ fn progress_is_told_on_the_calling_thread_and_may_cancel() {
             assert_eq!((stop, cancelled), (Outcome::Converged, 0));
             assert!(told >= 1, "{told}");
         } else {
-            // Another worker may have come to the end of one entry more.
+            // Another worker may have finished one more entry.
             assert_eq!(stop, Outcome::Cancelled);
             assert!(done as u64 >= cancel_at && done < entries.len(), "{done} {cancel_at}");
             assert!(threads > 1 || done as u64 == cancel_at, "{done} {cancel_at}");
@@ -245,7 +245,7 @@ fn progress_is_told_on_the_calling_thread_and_may_cancel() {
     }
 }
 
-/// Negative pressures count as no contact: of unlike bodies they displace nothing sideways either.
+/// Negative pressures count as no contact. For unlike bodies they cause no tangential displacements either.
 #[test]
 fn pressures_that_pull_are_none() {
     let h = vec![0.0; M * M];

@@ -1,5 +1,5 @@
-//! Tractions keep below mu p with the coefficient at rest, and stick and slip add up to the contact, where a solve with a law or a layer is cut short or
-//! loose.
+//! If a solve with a law or a layer is cut short or has a loose tolerance, tractions are still at most mu p with the coefficient at rest, and stick
+//! and slip add up to the contact.
 
 use contact_normal::effects::{Fall, FrictionLaw, Motion, PlasticLayer};
 use contact_normal::grid::Grid;
@@ -59,7 +59,7 @@ fn tractions_are_bounded_where_cycles_end_and_at_loose_tolerances() {
     assert!(cut_short > 50, "{cut_short}");
 }
 
-/// With memory a particle keeps the coefficient of where it comes from: here twice that of its place. Its tractions were cut to mu p, and the solve stagnated.
+/// With memory a particle keeps the coefficient of its last place: here twice that of its new one. The bound must be that of the particle.
 #[test]
 fn with_memory_the_bound_is_that_of_what_particles_bring() {
     let (grid, h) = ball((24, 24), 0.02);

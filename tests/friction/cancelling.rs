@@ -1,4 +1,4 @@
-//! A callback that cancels once, whichever call of it that is: nobody asks it again, and what there is by then is returned as CANCELLED.
+//! A callback cancels once, at any of its calls. It is not called again, and the last iterate is returned as CANCELLED.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{
@@ -15,10 +15,10 @@ use super::support::ball;
 
 const LIKE: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
 const UNLIKE: Bodies = Bodies { shear_modulus: [1.0, 4.0], poisson_ratio: [0.1, 0.4] };
-/// Tractions displace in their own direction only.
+/// Without Poisson's ratio tractions have displacements in their own direction only.
 const WITHOUT_POISSON: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.0; 2] };
 
-/// Runs once to count the calls, then cancels at each of them in turn; `run` returns the outcome. Returns how many calls there are.
+/// Runs once to count the calls, then cancels at each of them in turn. `run` returns the outcome. Returns the number of calls.
 fn cancelled_once(what: &str, mut run: impl FnMut(ProgressCallback<'_>) -> Outcome) -> usize {
     let mut all = 0;
     let whole = run(&mut |_: &Progress| {
@@ -48,7 +48,7 @@ fn pushed(motion: Motion, by_force: bool) -> Friction<'static> {
     Friction { motion, prescribed, spin: if by_force { 0.0 } else { 1e-3 }, ..Friction::new(0.4) }
 }
 
-/// A solve on a handle, whose result must be whole: finite, and within its bounds.
+/// A solve on a handle, whose result must be complete: finite, and within its bounds.
 fn on_a_handle<'s>(
     scene: &Scene<'s>,
     options: &Options,
@@ -84,7 +84,7 @@ fn the_normal_problem_by_every_method() {
     let limit = Some(PressureLimit(Each::Uniform(0.01)));
     for load in [Load::Force(0.03), Load::Approach(0.015)] {
         let plain = Scene::new(grid, &h, LIKE, load);
-        // Iterates reach it, the result does not: a second solve is without it.
+        // Iterates reach this limit, but the result does not, so that a second solve has no limit.
         let largest = solve(&plain, &Options::default()).expect("a solve").2.measures.max_pressure;
         let above = Some(PressureLimit(Each::Uniform(1.0001 * largest)));
         let scenes = [
@@ -144,7 +144,7 @@ fn steps_in_time_and_what_a_cancelled_one_leaves() {
             let mut solver = Solver::new(&first, &options).unwrap();
             solver.solve(&first, &options, None, None).unwrap();
             let (stop, _) = solver.solve(&next, &again, None, Some(progress)).unwrap();
-            // What a cancelled step has found is a result to go on from.
+            // The next step can continue from the result of a cancelled one.
             let (end, _) = solver.solve(&next, &again, None, None).unwrap();
             assert_eq!(end, Outcome::Converged);
             stop
@@ -168,7 +168,7 @@ fn the_tangential_problem_alone_and_tables() {
             for pressure in [Some(&pressure[..]), None] {
                 cancelled_once(&format!("a table, {bodies:?} {motion:?} {}", pressure.is_some()), |progress| {
                     let options = Options::default();
-                    // The last entry is told, too, when there is nothing left to cancel.
+                    // The callback is also called after the last entry, when there is nothing left to cancel.
                     solve_friction_batch(&scene, pressure, &entries, &options, Some(progress), |_, _, _| ()).unwrap().0
                 });
             }

@@ -1,4 +1,4 @@
-//! Friction of like coated bodies: motions, forces, derivatives, beside direct sums; closed forms of thin layers; what is refused.
+//! Friction of equal coated bodies: motions, forces and derivatives compared with direct sums; closed forms of thin layers; refusals.
 
 use contact_normal::error::Error;
 use contact_normal::friction::{Compliance, Report, Solution, Solver, Tangential, Vector};
@@ -14,18 +14,18 @@ use super::dense;
 use super::steady_scenes::ellipse;
 use super::support::{ball, residual_by, run};
 
-/// Of a layer with `1/G1 = 1` of thickness t, on `G2 = 1/mu`; both bodies.
+/// The coefficients of two equal bodies: a layer of thickness t with `1/G1 = 1`, on a substrate with `G2 = 1/mu`.
 pub fn coated(grid: &Grid, t: f64, mu: f64, [nu1, nu2]: [f64; 2]) -> Tangential {
     let [surface, below] =
         [(1.0, nu1), (mu, nu2)].map(|(shear, nu)| Compliance { shear, poisson: shear * nu, unlike: 0.0 });
     Tangential::of_coated(grid.dx, grid.dy, surface, (Coat::new(t, mu, [nu1, nu2]), below))
 }
 
-/// Thickness in contact radii, G1/G2, Poisson ratios.
+/// Thickness in contact radii, G1/G2, and the Poisson ratios of layer and substrate.
 const COATS: [(f64, f64, [f64; 2]); 4] =
     [(0.2, 0.0, [0.45, 0.3]), (0.5, 0.05, [0.0, 0.4]), (0.1, 8.0, [0.25, 0.3]), (2.0, 60.0, [0.3, 0.2])];
 
-/// A motion whose slip is some part of what the layer lets the contact slip.
+/// Motions whose rigid slip is of the order of the layer's displacement.
 fn motions(scale: f64) -> Vec<Friction<'static>> {
     let creepages = [Prescribed::Creepage(-0.3 * scale), Prescribed::Creepage(0.1 * scale)];
     let shift = Friction { prescribed: creepages, spin: 0.2 * scale, ..Friction::new(0.4) };
@@ -36,7 +36,7 @@ fn motions(scale: f64) -> Vec<Friction<'static>> {
         prescribed: creepages.map(|_| Prescribed::Creepage(-scale)),
         ..shift
     };
-    // No whole elements, and not along x.
+    // By parts of an element, and not along x.
     let aside = Friction { rolling_direction: 0.7, rolling_distance: 0.11, ..steady };
     vec![
         shift,
@@ -54,7 +54,7 @@ fn motions_and_forces_meet_the_conditions() {
     let (grid, g) = ellipse(0.8, 26);
     for (t, mu, nu) in COATS {
         let coated = coated(&grid, t, mu, nu);
-        // Of a spring, and of what is below.
+        // The compliances of the layer, as a spring, and of the substrate.
         let scale = t.min(1.0) + mu;
         for friction in motions(scale) {
             let mut solver = Solver::new(grid, coated.clone(), true, &Threads::One);
@@ -67,7 +67,7 @@ fn motions_and_forces_meet_the_conditions() {
     }
 }
 
-/// Derivatives of steady rolling, against differences.
+/// Derivatives of steady rolling, compared with differences.
 #[test]
 fn derivatives_are_those_of_differences() {
     let (grid, g) = ellipse(0.8, 30);
@@ -92,7 +92,7 @@ fn derivatives_are_those_of_differences() {
     }
 }
 
-/// Steady rolling of thin layers on rigid bodies: springs of 2 t/G1, on which tractions grow by the slip from the leading edge on, up to mu p.
+/// Steady rolling of thin layers on rigid bodies. They are springs of 2 t/G1: tractions grow with the slip from the leading edge, up to mu p.
 #[test]
 fn a_thin_layer_on_rigid_bodies_rolls_by_the_linear_theory() {
     let m = 40;
@@ -109,7 +109,7 @@ fn a_thin_layer_on_rigid_bodies_rolls_by_the_linear_theory() {
             let free = ahead - xi * grid.dx / (2.0 * t);
             let expected = free.min(0.4 * g[i]);
             slips += usize::from(expected < free && g[i] > 0.0);
-            // Elements feel each other by less than round-off of 2 t.
+            // Coefficients between elements are below the round-off of 2 t.
             assert!((found.traction[i][0] - expected).abs() <= 1e-9, "{i}: {:?} {expected}", found.traction[i]);
             assert!(found.traction[i][1].abs() <= 1e-9);
             ahead = expected;
@@ -151,7 +151,7 @@ fn steps<'a>(scene: &Scene<'a>, own: Option<TangentialInfluence<'a>>) -> (Vec<f6
     (handle.state().p.clone(), solved)
 }
 
-/// Scenes: pressures are those without friction, and tractions those of tables with the coefficients.
+/// Scenes have the pressures without friction, and the tractions of tables with the same coefficients.
 #[test]
 fn scenes_give_what_tables_of_the_coefficients_give() {
     let (grid, h) = ball(22, 0.2);
@@ -178,11 +178,11 @@ fn scenes_give_what_tables_of_the_coefficients_give() {
             let largest = expected.traction.iter().map(|q| q[0].hypot(q[1])).fold(0.0, f64::max);
             assert!(largest > 0.0);
             for (a, b) in found.traction.iter().zip(&expected.traction) {
-                // A residual of 1e-9 hides some 3e-7 of the tractions (docs/friction.md).
+                // With a residual of 1e-9 the error of tractions is some 3e-7 (docs/friction.md).
                 assert!((a[0] - b[0]).hypot(a[1] - b[1]) <= 1e-6 * largest, "{a:?} {b:?} of {largest}");
             }
         }
-        // With pressures that are given.
+        // With given pressures.
         let alone = Scene { friction: Some(pushed()), ..scene.clone() };
         let options = Options { tolerance: 1e-9, ..Options::default() };
         let (stop, again, _) = solve_tangential(&alone, &pressure, &options, None).unwrap();
@@ -192,7 +192,7 @@ fn scenes_give_what_tables_of_the_coefficients_give() {
     }
 }
 
-/// Errors of shifts and of steady rolling are estimated: by forces on 3 to 6 times finer grids.
+/// The estimated errors of shifts and of steady rolling cover the differences from forces on 3 to 6 times finer grids.
 #[test]
 fn errors_of_forces_are_covered() {
     let force_on = |m: usize, (layer, bodies): (CoatingLayer, Bodies), motion: Motion, creepage: f64| {
@@ -213,14 +213,14 @@ fn errors_of_forces_are_covered() {
         (CoatingLayer { thickness: 0.3, shear_modulus: 5.0, poisson_ratio: 0.2 }, stiff(1.0)),
     ] {
         for (motion, part) in [(Motion::Shift, 1.0), (Motion::SteadyRolling, 0.5)] {
-            // Some part of what slips as a whole.
+            // A part of the creepage of full slip.
             let creepage = part * 0.3 * 0.012;
             let exact = force_on(120, (layer, bodies), motion, creepage);
             for m in [20, 40] {
                 let found = force_on(m, (layer, bodies), motion, creepage);
                 let error = (found.force[0] - exact.force[0]).abs() / exact.carried;
                 let estimated = found.error[0].map(|error| error / exact.carried);
-                // Rolling is not known where fewer than 24 elements lie across.
+                // For rolling there is no estimate if the contact has fewer than 24 elements across.
                 let is_covered = estimated.map_or(motion == Motion::SteadyRolling, |estimated| error <= estimated);
                 assert!(is_covered, "{m} {motion:?} {}: {error:e}, estimated {estimated:?}", layer.thickness);
             }
@@ -228,7 +228,7 @@ fn errors_of_forces_are_covered() {
     }
 }
 
-/// A thick layer is the body, whatever is below; one of the body's own material has the bits of the plain scene.
+/// A very thick layer acts as a half-space, whatever the substrate. A layer of the body's own material gives the bits of the plain scene.
 #[test]
 fn thick_layers_and_equal_ones_are_half_spaces() {
     let (grid, h) = ball(22, 0.2);
@@ -247,7 +247,7 @@ fn thick_layers_and_equal_ones_are_half_spaces() {
     }
 }
 
-/// Bodies that are not the same are refused, and the member that differs is named.
+/// Unequal bodies are refused, and the message names the member that differs.
 #[test]
 fn other_bodies_are_refused_by_name() {
     let (grid, h) = ball(12, 0.2);
@@ -257,7 +257,7 @@ fn other_bodies_are_refused_by_name() {
     for (coating, bodies, words) in [
         (layers(Some(RUBBER), None), STEEL, "coating[1] is none"),
         (layers(None, Some(RUBBER)), STEEL, "coating[0] is none"),
-        // One that is none: of no thickness.
+        // A coating without thickness is none.
         (layers(Some(RUBBER), Some(CoatingLayer { thickness: 0.0, ..RUBBER })), STEEL, "coating[1] is none"),
         (
             layers(Some(RUBBER), Some(stiff(3.0))),
@@ -288,7 +288,7 @@ fn other_bodies_are_refused_by_name() {
             assert!(message.contains("friction and coating are both given") && message.contains(words), "{message}");
         }
     }
-    // A ratio that no coating has is refused with pressures that are given, too.
+    // A Poisson ratio out of range is also refused with given pressures.
     let scene =
         Scene { coating: both(stiff(1e7)), friction: Some(pushed()), ..Scene::new(grid, &h, STEEL, Load::Force(3.0)) };
     let refused = solve_tangential(&scene, &vec![0.1; grid.len()], &Options::default(), None).map(|_| ());

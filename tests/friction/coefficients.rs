@@ -1,4 +1,4 @@
-//! Tangential influence coefficients against quadrature, products against direct sums.
+//! Tangential influence coefficients compared with quadrature, and products with direct sums.
 
 use std::f64::consts::PI;
 
@@ -39,14 +39,14 @@ pub fn rule() -> Vec<(f64, f64)> {
     (0..n).map(node).collect()
 }
 
-/// Ends of intervals that halve towards 0 where they contain it, so that an integrand like a power is smooth on each.
+/// The ends of intervals that halve towards 0 if they contain it, so that a power is smooth on each.
 pub fn panels(from: f64, to: f64) -> Vec<(f64, f64)> {
     if from < 0.0 && to > 0.0 {
         let mut all = panels(0.0, to);
         all.extend(panels(0.0, -from).into_iter().map(|(a, b)| (-b, -a)));
         return all;
     }
-    // Each no longer than its distance from 0, down to round-off of the largest.
+    // Each is at most as long as its distance from 0, down to round-off of the largest.
     let (near, far, sign) = if from.abs() < to.abs() { (from, to, 1.0) } else { (to, from, -1.0) };
     let (mut all, mut end) = (Vec::new(), far.abs());
     while end > near.abs() {
@@ -61,19 +61,19 @@ pub fn panels(from: f64, to: f64) -> Vec<(f64, f64)> {
     all
 }
 
-/// The integrals a, b, c over the element, in polar panels: graded towards the point where the integrand is singular. In y by the rule,
-/// in x in closed form: `[x/r]`, `[asinh(x/|y|) - x/r]`, `[-y/r]`.
+/// The integrals a, b, c over the element: in y by the rule, on panels graded towards the singular point, and in x in closed form: `[x/r]`,
+/// `[asinh(x/|y|) - x/r]`, `[-y/r]`.
 fn integrals(kx: f64, ky: f64, dx: f64, dy: f64) -> [f64; 3] {
     let (xp, xm) = ((kx + 0.5) * dx, (kx - 0.5) * dx);
     let mut sums = [0.0; 3];
     let panels = panels((ky - 0.5) * dy, (ky + 0.5) * dy);
-    // Far away the ends are rounded to more than the width is.
+    // Far away the rounding of the ends exceeds that of the width.
     let width: f64 = dy / panels.iter().map(|(from, to)| to - from).sum::<f64>();
     for (from, to) in panels {
         for (node, weight) in rule() {
             let (y, weight) = (0.5 * (from + to) + 0.5 * (to - from) * node, 0.5 * (to - from) * weight);
             let (rp, rm) = (xp.hypot(y), xm.hypot(y));
-            // Differences of sines by the angle between them, of asinh by their sinh.
+            // The difference of sines by the angle between them, that of asinh by its sinh.
             let angle = (y.abs() * dx).atan2(xp * xm + y * y);
             let (middle, half) = (0.5 * ((xp / y.abs()).atan() + (xm / y.abs()).atan()), 0.5 * angle);
             let sine = 2.0 * middle.cos() * half.sin();
@@ -96,7 +96,7 @@ fn tangential_coefficients_are_those_of_quadrature() {
         let tangential = Tangential::new(aspect, 1.0, compliance);
         for &kx in &near {
             for &ky in &near {
-                // Far along x the closed form in x loses digits: turned around the integral in x is the smooth one.
+                // Far along x the closed form in x loses digits: with x and y exchanged the smooth direction is integrated by the rule.
                 let [a, b, c] = if kx * aspect > ky {
                     let [b, a, c] = integrals(ky, kx, 1.0, aspect);
                     [a, b, c]
@@ -134,14 +134,14 @@ fn a_tangential_line_of_elements_is_as_stiff_as_flamant_says() {
     for (component, factor) in [(0, 1.0 - nu), (1, 1.0)] {
         let found = column(1.0, component) - column(6.0, component);
         let exact = -2.0 * factor / PI * (log(1.0) - log(6.0));
-        // What lies beyond m elements: the difference of 1/r, some (36/m^2)/pi.
+        // The part beyond m elements: the difference of 1/r, some (36/m^2)/pi.
         assert!((found - exact).abs() <= 36.0 / f64::from(m).powi(2), "{component}: {found} {exact}");
     }
 }
 
 #[test]
 fn products_are_direct_sums() {
-    // In both directions, or in one; with a Poisson ratio of 0 or on a line that displaces in that direction only, exactly.
+    // Tractions in both directions, or in one. Displacements across it are exactly 0 for a Poisson ratio of 0.
     let cases = [(0.6, [1.0, 1.0]), (0.6, [0.0, 1.0]), (0.0, [1.0, 1.0]), (0.0, [1.0, 0.0]), (0.0, [0.0, 1.0])];
     for ((mx, my), (poisson, directions)) in
         [(9, 7), (1, 6), (8, 1), (1, 1), (16, 16), (5, 33)].into_iter().flat_map(|size| cases.map(|case| (size, case)))
@@ -183,7 +183,7 @@ fn products_are_direct_sums() {
 
 #[test]
 fn the_inverse_of_the_circulant_is_near_that_of_a_product() {
-    // On a smooth traction far from the rim, M A q is q but for what the rim and the other period do.
+    // For a smooth traction far from the rim M A q is q, up to effects of the rim and of the other period.
     let grid = Grid::new(48, 40, 1.0, 1.2).unwrap();
     let tangential = Tangential::new(1.0, 1.2, Compliance { shear: 1.0, poisson: 0.3, unlike: 0.0 });
     let q: Vec<Vector> = (0..grid.len())
@@ -200,6 +200,6 @@ fn the_inverse_of_the_circulant_is_near_that_of_a_product() {
     inverse.apply(&u, 1.0, &mut back, &mut inverse.workspace().unwrap());
     let norm = |v: &[Vector]| v.iter().map(|v| v[0] * v[0] + v[1] * v[1]).sum::<f64>().sqrt();
     let difference: Vec<Vector> = q.iter().zip(&back).map(|(q, b)| [q[0] - b[0], q[1] - b[1]]).collect();
-    // A preconditioner: worth something, and no more is promised.
+    // A preconditioner need only be approximate.
     assert!(norm(&difference) < 0.2 * norm(&q), "{}", norm(&difference) / norm(&q));
 }

@@ -1,4 +1,4 @@
-//! The conditions of friction, recomputed by direct sums: random ellipses with motions and with forces; the hard cases.
+//! The conditions of friction, recomputed by direct sums: random ellipses with creepages and with forces; hard cases.
 
 use contact_normal::error::Error;
 use contact_normal::friction::Request;
@@ -35,7 +35,7 @@ fn random_motions_and_forces_meet_the_conditions() {
     }
 }
 
-/// Elements of a ball's contact on m x m elements, of which some are left out.
+/// The elements of a ball's contact on m x m elements, without some that are left out.
 pub fn disc(m: usize, inside: impl Fn(usize, usize) -> bool) -> (Grid, Vec<f64>) {
     let grid = Grid::new(m, m, 2.2 / m as f64, 2.2 / m as f64).unwrap();
     let centre = 0.5 * (m as f64 - 1.0);
@@ -67,7 +67,7 @@ fn the_gap_bounds_the_error_of_loose_tractions() {
         let rigid = (0..n).map(|i| case.friction.rigid_slip_at(&case.grid, i));
         let work: f64 = case.bound.iter().zip(rigid).map(|(g, w)| g * w[0].hypot(w[1])).sum();
         let numerator = report.certificate.gap * work;
-        // What the tighter one leaves is 1e-8 of that.
+        // The error of the tight solution is 1e-8 of this.
         assert!(energy <= 1.000001 * numerator, "{seed}: {energy:e} {numerator:e}");
     }
 }
@@ -133,13 +133,13 @@ fn forces_that_friction_cannot_carry_are_refused() {
         assert_eq!(end, Outcome::Converged, "{part}");
         assert!((report.force[0] - part * carried).abs() <= 1e-6 * carried);
     }
-    // Against much spin it takes a large shift.
+    // With a large spin this force needs a large shift.
     let (end, report) = solve(&Friction { spin: 50.0, ..with(0.9) }).unwrap();
     assert_eq!(end, Outcome::Converged);
     assert!((report.force[0] - 0.9 * carried).abs() <= 1e-6 * carried && report.creepage[0] < -50.0 * 0.5);
 }
 
-/// Without friction, and where the bodies are apart, a force of 0 is met, and no other one.
+/// Without friction, or if the bodies are apart, only a force of 0 is possible.
 #[test]
 fn a_force_of_zero_is_met_where_nothing_is_carried() {
     let (grid, g) = disc(20, |_, _| true);
@@ -163,7 +163,7 @@ fn a_force_of_zero_is_met_where_nothing_is_carried() {
             }
         }
     }
-    // The whole call, where nothing touches.
+    // The whole solve, without contact.
     let far = vec![1.0; grid.len()];
     for nu in [0.3, 0.2] {
         let bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3, nu] };
@@ -183,7 +183,7 @@ fn slips_that_dwarf_what_tractions_displace_are_refused() {
         let request = Request::new(&g, &friction, 1e-6);
         solver(&grid, 0.3).solve(&request, &mut |_, _| true)
     };
-    // An element displaces itself by some 0.1 per traction, and tractions are of order mu.
+    // The displacement of an element is some 0.1 times its traction, and tractions are of order mu.
     for (by, mu) in [(1e32, 1.0), (1e-62, 1.0), (1.0, 1e62), (1.0, 1e-32), (2e40, 1.0), (5e-90, 1.0), (1e-300, 1.0)] {
         let refused = shifted(by, mu).unwrap_err().to_string();
         assert!(refused.contains("more than 1e30 times or less than 1e-60 times that"), "{refused}");
@@ -201,7 +201,7 @@ fn slips_that_dwarf_what_tractions_displace_are_refused() {
 
 #[test]
 fn previous_tractions_of_any_kind_are_taken() {
-    // Beyond their bounds, or where there is no contact any more: the displacements that they caused are relaxed.
+    // Previous tractions may exceed their bounds, or lie outside the contact. Their displacements are then released.
     let (grid, g) = disc(20, |x, _| x > 6);
     let garbage: Vec<f64> = (0..grid.len()).map(|i| 10.0 * ((i * 7919 % 101) as f64 / 50.0 - 1.0)).collect();
     let friction = Friction {
@@ -238,7 +238,7 @@ fn a_callback_cancels_wherever_it_is_told() {
             })
             .unwrap();
         assert_eq!((end, told), (Outcome::Cancelled, last));
-        // What is there is feasible.
+        // The tractions are within their bounds.
         let solution = solver.solution().unwrap();
         assert!(solution.traction.iter().zip(&g).all(|(q, g)| q[0].hypot(q[1]) <= *g));
     }

@@ -1,4 +1,4 @@
-//! `u = A q` by direct summation, as the reference in tests of `Toeplitz`.
+//! `u = A q` by direct summation: the reference for tests of `Toeplitz`.
 
 use contact_normal::friction::{Tangential, Vector};
 use contact_normal::grid::Grid;

@@ -1,4 +1,4 @@
-//! Friction beside the other effects: none is ignored, and what is not solved is refused by name. Handles and precisions.
+//! Friction with the other effects: none is ignored, and unsupported pairs are refused by name. Handles and precisions.
 
 use contact_normal::error::Error;
 use contact_normal::influence::{RowTables, Table};
@@ -64,7 +64,7 @@ fn each_effect_changes_the_tractions_or_is_refused() {
         let guess = (options.active_set == ActiveSet::Fixed).then_some(Guess { pressure: &nothing, contact: &fixed });
         let (stop, report) = solver.solve(&scene, &options, guess, None).unwrap();
         assert_eq!(stop, Outcome::Converged, "{name}");
-        // In units in which 1/G is 1: by a power of two, which rounds nothing.
+        // In units with 1/G = 1: scaling by a power of two is exact.
         let mut solution = solver.friction().unwrap().clone();
         solution.traction.iter_mut().flatten().for_each(|q| *q *= compliance);
         let pressures: Vec<f64> = solver.state().p.iter().map(|p| p.max(0.0) * compliance).collect();
@@ -73,13 +73,13 @@ fn each_effect_changes_the_tractions_or_is_refused() {
         assert!(left <= 1.001e-6, "{name}: {left}");
         let found = &solver.friction().unwrap().traction;
         let change = found.iter().zip(&alone).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
-        // Of pressures of some 1000.
+        // The pressures are some 1000.
         assert!(change > 1.0, "{name}: {change}");
         assert!(name != "fixed contact area" || solver.state().p.iter().any(|p| *p < 0.0), "no element pulls");
     }
 }
 
-/// A coating of no thickness, or of its body's own material, is none: beside friction, tables, a period, and on a handle.
+/// A coating without thickness, or of its body's own material, is none, so that it is allowed with friction, tables, a period, and on a handle.
 #[test]
 fn a_coating_that_is_none_is_beside_everything() {
     let (grid, h) = ball(24, 0.08);
@@ -118,7 +118,7 @@ fn a_coating_that_is_none_is_beside_everything() {
             handle.solve(&coated, &options, None, None).unwrap();
             assert!(bits(&handle) == expected, "{layers:?}");
         }
-        // What is no coating is refused all the same, and so is one that is there.
+        // Invalid coatings are still refused, and so is a real one.
         for (layers, word) in [
             ([layer(-1.0, 82000.0, 0.28), None], "thickness"),
             ([layer(0.0, -1.0, 0.28), None], "shear_modulus"),
@@ -158,7 +158,7 @@ fn one_coefficient_is_as_many_alike() {
         solve(&scene, &Options::default()).unwrap().0.friction().unwrap().traction.clone()
     };
     assert_eq!(found(Coefficient::Uniform(0.3)), found(Coefficient::PerElement(&each)));
-    // No friction on one half: no tractions there, and slip.
+    // Without friction on one half there are no tractions, and all elements slip.
     let half: Vec<f64> = (0..grid.len()).map(|i| if i % 32 < 16 { 0.0 } else { 0.3 }).collect();
     let tractions = found(Coefficient::PerElement(&half));
     assert!((0..grid.len()).all(|i| i % 32 >= 16 || tractions[i] == [0.0; 2]));
@@ -193,12 +193,12 @@ fn the_precisions_agree() {
     };
     let (double, mixed) = (found(Precision::Double), found(Precision::Mixed));
     let apart = double.iter().zip(&mixed).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
-    // Short waves of a residual of 1e-9 hide some 1e-6 of the tractions, of which the largest are 300.
+    // In short waves a residual of 1e-9 is an error of some 1e-6 of the tractions, of which the largest are 300.
     assert!(apart <= 1e-3, "{apart}");
 }
 
-/// Pressures of a normal problem that is stopped on its way may carry less than the tangential force: that is no refusal. The force is
-/// one that the solved problem carries.
+/// If the normal problem is stopped early, its pressures may carry less than the tangential force. This must not be refused, because the solved
+/// problem carries the force.
 #[test]
 fn a_stop_of_the_normal_problem_is_not_a_force_that_is_too_large() {
     let (grid, h) = ball(32, 0.06);

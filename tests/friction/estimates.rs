@@ -1,4 +1,4 @@
-//! The estimated errors of tangential forces beside the true ones, of Cattaneo's ball and of one that rolls.
+//! The estimated errors of tangential forces compared with the true ones, for Cattaneo's ball and for one that rolls.
 
 use contact_normal::friction::Report;
 use contact_normal::grid::Grid;
@@ -8,16 +8,16 @@ use contact_normal::solver::{solve, Options, Outcome};
 const MU: f64 = 0.3;
 const RADIUS: f64 = 100.0;
 
-/// A ball with a contact radius of 1 on m x m elements, off the middle of an element, pressed down and moved; its mu N is returned, too.
+/// A ball with a contact radius of 1 on m x m elements, with its centre off the middle of an element, pressed and moved. Also returns its mu N.
 fn moved(m: usize, nu: f64, friction: impl Fn(f64, [f64; 2]) -> Friction<'static>) -> (Report, f64) {
     moved_between(m, Bodies::same(1.0, nu), friction)
 }
 
-/// The same of any bodies.
+/// [`moved`] for any bodies.
 fn moved_between(m: usize, bodies: Bodies, friction: impl Fn(f64, [f64; 2]) -> Friction<'static>) -> (Report, f64) {
     let d = 2.37 / m as f64;
     let grid = Grid::new(m, m, d, d).unwrap();
-    // In elements, somewhere between the centres.
+    // The offset of the ball from the centre of an element.
     let off = [0.31 * d * (((m * 7) % 5) as f64 - 2.0) / 2.0, 0.23 * d * (((m * 3) % 5) as f64 - 2.0) / 2.0];
     let place = |i: usize, k: usize| (i as f64 - 0.5 * (m - 1) as f64) * d + off[k];
     let h: Vec<f64> =
@@ -32,7 +32,7 @@ fn moved_between(m: usize, bodies: Bodies, friction: impl Fn(f64, [f64; 2]) -> F
     (report.friction.unwrap(), MU * force)
 }
 
-/// The median of estimated over true.
+/// The median of the ratios of estimated and true errors.
 fn median(mut ratios: Vec<f64>) -> f64 {
     ratios.sort_by(f64::total_cmp);
     ratios[ratios.len() / 2]
@@ -90,7 +90,7 @@ fn the_error_of_a_shift_of_unlike_bodies_is_covered() {
                     ..Friction::new(MU)
                 })
             };
-            // A twentieth of the errors looked at.
+            // The error of this reference is a twentieth of the errors below.
             let (force, creepage) = (by_shift(160).0.force, by_force(160).0.creepage);
             for m in [20, 24, 32, 40] {
                 let (shifted, pushed) = (by_shift(m).0, by_force(m).0);
@@ -131,7 +131,7 @@ fn the_error_of_a_rolling_balls_force_or_creepage_is_covered() {
             })
         };
         let by_creepages = [Prescribed::Creepage(xi), Prescribed::Creepage(eta)];
-        // Of first order: extrapolated from two grids, some hundredth of the errors looked at.
+        // Errors are of first order. Extrapolated from two grids the reference has some hundredth of the errors below.
         let [coarse, fine] = [128, 256].map(|m| rolls(m, by_creepages).0.force);
         let exact = [0, 1].map(|k| 2.0 * fine[k] - coarse[k]);
         // The estimate needs a coarser grid: 24 elements across the contact.
@@ -166,10 +166,10 @@ fn errors_of_steps_that_continue_are_not_known() {
     assert_eq!(found.error, [None; 2]);
 }
 
-/// Sides of a grid, and how far off its middle a surface is: edges and jumps of mu fall on elements as it happens.
+/// Sides of a grid, and offsets of the surface from its middle, so that edges and jumps of mu have various places within an element.
 const PLACES: [(f64, [f64; 2]); 3] = [(1.7, [0.0, 0.0]), (1.93, [0.011, -0.007]), (1.61, [-0.013, 0.003])];
 
-/// The grid and a surface at its centres; and mu.
+/// The grid, a surface at its centres, and mu.
 fn placed(
     m: usize,
     (side, off): (f64, [f64; 2]),
@@ -183,7 +183,7 @@ fn placed(
     (Grid::new(m, m, d, d).unwrap(), h, mu)
 }
 
-/// No estimate is below half of its error, one in ten below all of it; the median.
+/// Asserts that no estimate is below half of its error, at most one in ten is below its error, and the median is at most `most`.
 fn assert_covered(mut ratios: Vec<f64>, most: f64, what: &str) {
     ratios.sort_by(f64::total_cmp);
     let (low, median) = (ratios.iter().filter(|ratio| **ratio < 1.0).count(), ratios[ratios.len() / 2]);
@@ -191,8 +191,8 @@ fn assert_covered(mut ratios: Vec<f64>, most: f64, what: &str) {
     assert!(ratios[0] >= 0.5 && 10 * low <= ratios.len() && median <= most, "{what}: {low} low, median {median}");
 }
 
-/// A flat punch sticks until all of it slips: tractions are proportional to pressures, and with nu = 0 both displace alike. So
-/// `F = k E* shift` with the k of the normal force, for a circle of radius a 2 a, for a square of side L `pi 0.36679 L` (Read 1997).
+/// A flat punch sticks until all of it slips: tractions are proportional to pressures, and with nu = 0 both have equal displacements. So `F = k E*
+/// shift` with the k of the normal force: 2 a for a circle of radius a, `pi 0.36679 L` for a square of side L (Read 1997).
 #[test]
 fn the_error_of_a_flat_punchs_force_or_shift_is_covered() {
     let square = |x: f64, y: f64| if x.abs().max(y.abs()) < 0.6 { 0.0 } else { f64::INFINITY };
@@ -231,7 +231,7 @@ fn the_error_of_a_flat_punchs_force_or_shift_is_covered() {
     }
 }
 
-/// With a coefficient that falls the errors of a shift by creepages are known, those by force and those of rolling are not.
+/// With a coefficient that falls the errors of a shift by creepages are known, but not those by force and those of rolling.
 #[test]
 fn with_a_law_only_shifts_by_creepages_have_errors() {
     let saturating = MU * 2.0 / ((1.0 - 0.28) * RADIUS);
@@ -253,8 +253,7 @@ fn with_a_law_only_shifts_by_creepages_have_errors() {
     }
 }
 
-/// A ball of radius 1 on which mu jumps at x = c, where all slips: the part of Hertz's force beyond c is
-/// `(pi p0/(2 a)) (2 a^3/3 - a^2 c + c^3/3)`.
+/// A ball of radius 1 with a jump of mu at x = c, in full slip: the part of Hertz's force beyond c is `(pi p0/(2 a)) (2 a^3/3 - a^2 c + c^3/3)`.
 #[test]
 fn the_error_of_a_force_where_mu_jumps_is_covered() {
     let a = 0.6_f64;
@@ -281,7 +280,7 @@ fn the_error_of_a_force_where_mu_jumps_is_covered() {
     assert_covered(ratios, 5.0, "mu jumps");
 }
 
-/// With an approach that is given the normal force is off, and with it `mu N` of what slips: of Hertz's ball.
+/// With a given approach the normal force has an error, and so has `mu N` of a slipping ball: compared with Hertz.
 #[test]
 fn the_error_of_a_slipping_balls_force_by_approach_is_covered() {
     let (a, mut ratios) = (0.6_f64, Vec::new());

@@ -1,11 +1,11 @@
-//! Estimated errors of forces by small shifts, which are linear in the shift, where a jump of the surface is all that gives an error.
+//! Estimated errors of forces by small shifts. They are linear in the shift, and a jump of the surface is their only cause.
 
 use contact_normal::friction::Report;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
-/// A round punch, 0.3 high, of radius 0.62 on m x m elements of a square of side 2.
+/// A round punch, 0.3 high, of radius 0.62, on m x m elements of a square of side 2.
 fn punch(m: usize, shift: f64) -> Report {
     let d = 2.0 / m as f64;
     let place = |k: usize| (k as f64 + 0.5) * d - 1.0;
@@ -21,7 +21,7 @@ fn punch(m: usize, shift: f64) -> Report {
     report.friction.expect("friction")
 }
 
-/// The part of the estimate by the normal force fell as the square of the shift.
+/// The estimate must be linear in the shift, also the part by the normal force.
 #[test]
 fn errors_of_a_punch_are_covered_however_small_the_shift() {
     for shift in [1e-2, 1e-4, 1e-6, 1e-8, 1e-12] {

@@ -1,4 +1,4 @@
-//! Forces that are given where nearly all slips, on few elements, or beside large slips: the force grows with the creepage, so there is an answer.
+//! Given forces in nearly full slip, on few elements, or with large slips: the force grows with the creepage, so that a solution exists.
 
 use std::f64::consts::PI;
 
@@ -10,11 +10,11 @@ use super::support::{residual, run, solver};
 
 const TOLERANCE: f64 = 1e-6;
 
-/// Solves on given pressures of like bodies and checks: the conditions by direct sums, and the forces that are given.
+/// Solves for given pressures of like bodies, and checks the conditions by direct sums, and the given forces.
 fn meets(grid: &Grid, g: &[f64], friction: &Friction<'_>, before: &[[f64; 2]], what: &str) -> [f64; 2] {
     let (report, solution) = run(&mut solver(grid, 0.3), g, friction, TOLERANCE);
     let left = residual((grid, 0.3), g, friction, before, (&report, &solution));
-    // Sums of the test are rounded, too.
+    // The sums of the test have round-off as well.
     assert!(left <= 1.01 * TOLERANCE, "{what}: {left:e}");
     let mu = friction.coefficient.at(0);
     let carried = mu * g.iter().sum::<f64>() * grid.element_area();
@@ -27,8 +27,8 @@ fn meets(grid: &Grid, g: &[f64], friction: &Friction<'_>, before: &[[f64; 2]], w
     report.creepage
 }
 
-/// An aluminium roller on a steel one that rolls freely, with hardly any friction (Bentall and Johnson 1967): all slips, with a creepage of 5.260e-4
-/// (CONTACT's example bentall, case 2).
+/// An aluminium roller on a steel one that rolls freely, with hardly any friction (Bentall and Johnson 1967). All elements slip, with a creepage of
+/// 5.260e-4 (CONTACT's example bentall, case 2).
 #[test]
 fn rollers_with_little_friction_roll_freely() {
     let grid = Grid::new(216, 1, 1e-3, 1e3).unwrap();
@@ -48,13 +48,13 @@ fn rollers_with_little_friction_roll_freely() {
         let found = report.friction.unwrap();
         assert!(found.force[0].abs() <= TOLERANCE * mu * force, "mu {mu}: {:?}", found.force);
         if mu <= 5e-4 {
-            // The creepage is the slip of the one element that sticks, and that of neighbours differs by half a hundredth.
+            // The creepage is the rigid slip of the only sticking element; that of its neighbours differs by half a hundredth.
             assert!((found.creepage[0] / 5.260e-4 - 1.0).abs() <= 5e-3, "mu {mu}: {:?}", found.creepage);
         }
     }
 }
 
-/// A line contact in which one creepage passes the rigid slip of nearly all elements at once.
+/// A line contact whose own rigid slip is nearly uniform, so that one creepage balances nearly all elements at once.
 #[test]
 fn a_slip_of_the_callers_own_is_balanced() {
     for n in [5, 40, 200] {
@@ -77,7 +77,7 @@ fn a_slip_of_the_callers_own_is_balanced() {
     }
 }
 
-/// A force of up to .999 mu N on one to 25 elements, square and slender ones.
+/// A force of up to .999 mu N on 1 to 25 elements, square and slender ones.
 #[test]
 fn few_elements_reach_any_force_below_mu_n() {
     for (mx, my, dy) in [(1, 1, 1.0), (1, 1, 0.1), (1, 2, 2.0), (2, 1, 0.5), (1, 5, 20.0), (5, 5, 1.0)] {
@@ -100,7 +100,7 @@ fn few_elements_reach_any_force_below_mu_n() {
     }
 }
 
-/// What else moves may be large: a creepage that is given across the force, and tractions before the step.
+/// Large other motions: a given creepage across the force, and previous tractions.
 #[test]
 fn a_force_beside_large_slips_and_tractions_is_met() {
     let m = 15;
@@ -114,7 +114,7 @@ fn a_force_beside_large_slips_and_tractions_is_met() {
             let by = |creepage| [Prescribed::Force(part * carried), Prescribed::Creepage(creepage)];
             let friction = Friction { motion, prescribed: by(size), ..Friction::new(0.3) };
             let [creepage, _] = meets(&grid, &pressure, &friction, &vec![[0.0; 2]; m * m], &what);
-            // By symmetry.
+            // The creepage along the force is 0 by symmetry.
             assert!(part > 0.0 || creepage.abs() <= 1e-6 * size, "{what}: {creepage:e}");
             if motion == Motion::SteadyRolling {
                 continue;
@@ -129,7 +129,7 @@ fn a_force_beside_large_slips_and_tractions_is_met() {
     }
 }
 
-/// Nothing moves, and a force of 0 is given: no creepage, no tractions, and no residual.
+/// Without a motion and with a force of 0: no creepage, no tractions, and no residual.
 #[test]
 fn what_does_not_move_carries_no_force() {
     let grid = Grid::new(1, 9, 1.0, 0.41).unwrap();
@@ -152,7 +152,7 @@ fn what_does_not_move_carries_no_force() {
     }
 }
 
-/// Gradients went on by a fifth of their way at a time once a step had been held back by that much: 40 products.
+/// A shift of a line contact with spin takes few products: clipped steps of gradients must not stay short.
 #[test]
 fn a_shift_of_a_line_contact_takes_few_products() {
     for m in [30, 92, 200] {
@@ -167,8 +167,8 @@ fn a_shift_of_a_line_contact_takes_few_products() {
     }
 }
 
-/// Two creepages of all slip, with too much force and too little, of which the natural map leads from each to the other: the second one leaves
-/// less than half of what the first one leaves. Between them one element sticks.
+/// Two creepages of full slip, one with too much force and one with too little. The natural map leads from each to the other, and halves the
+/// residual. Between them is the solution, in which one element sticks.
 #[test]
 fn creepages_that_lead_to_each_other_are_left() {
     let grid = Grid::new(17, 1, 2.2 / 17.0, 26.83).unwrap();
@@ -191,7 +191,8 @@ fn creepages_that_lead_to_each_other_are_left() {
     }
 }
 
-/// A residual that one element of 1735 has alone hides its tractions: a trial that is only that good says that forces are too small where they are too large.
+/// An rms over 1735 elements can be small although one of them has a large residual. A trial with such a residual must not decide whether forces are
+/// too small or too large.
 #[test]
 fn forces_are_met_where_the_residual_hides_one_element() {
     let grid = Grid::new(2000, 1, 1.1e-3, 268.0051990031252).unwrap();

@@ -1,4 +1,4 @@
-//! Bounds that no traction reaches, on all elements or beside ordinary ones: as glued surfaces have them.
+//! Bounds that no traction reaches, on all elements or on some, as for glued surfaces.
 
 use contact_normal::friction::{Report, Request, Start, SLIP};
 use contact_normal::grid::Grid;
@@ -18,7 +18,7 @@ fn pressures(m: usize, factor: impl Fn(usize) -> f64) -> (Grid, Vec<f64>) {
     (grid, (0..m * m).map(of).collect())
 }
 
-/// Elements that stick carry far less than such a bound. With bounds below 1e-17 of it taken for 0 forces were three times too large.
+/// Sticking elements carry far less than such a bound. Elements with ordinary bounds beside them keep their bounds.
 #[test]
 fn glued_elements_beside_ordinary_ones_leave_no_slip() {
     let mut slipping = 0;
@@ -48,7 +48,7 @@ fn glued_elements_beside_ordinary_ones_leave_no_slip() {
     assert!(slipping > 100, "{slipping}");
 }
 
-/// A force far below mu N was met by no force at all, to the tolerance relative to mu N.
+/// A force far below mu N is met relative to itself, not to mu N.
 #[test]
 fn a_small_force_is_carried_where_nothing_slips() {
     for m in [1, 2, 8, 20, 26] {
@@ -75,7 +75,7 @@ fn a_small_force_is_carried_where_nothing_slips() {
     }
 }
 
-/// The creepage of a start is no motion of the caller's: tractions of 1e-70 were refused as a motion that is too small.
+/// The creepage of a start is no motion of the caller, so that tractions of 1e-70 are no motion that is too small.
 #[test]
 fn a_start_of_tiny_tractions_is_no_motion() {
     let (grid, g) = pressures(9, |_| 1.0);
@@ -99,7 +99,7 @@ fn a_start_of_tiny_tractions_is_no_motion() {
     }
 }
 
-/// Forces are sums of weighted tractions: with small weights tractions are as much larger.
+/// Forces are sums of weighted tractions: with small weights tractions are larger by the inverse.
 #[test]
 fn weights_do_not_lower_the_reach_of_glued_elements() {
     for weight in [1e-2, 1e-6, 1e-8] {
@@ -116,7 +116,8 @@ fn weights_do_not_lower_the_reach_of_glued_elements() {
     }
 }
 
-/// Steady rolling has one solution, whatever the tractions before. Large ones raised the reach of tractions, and ordinary bounds beside it were dropped.
+/// Steady rolling has one solution, whatever the previous tractions. Large ones must not raise the scale of tractions, below which bounds are
+/// dropped.
 #[test]
 fn tractions_before_steady_rolling_do_not_raise_the_reach_of_glued_elements() {
     let (grid, g) = pressures(12, |i| if i % 12 < 6 { 1.0 } else { 1e20 });
@@ -132,7 +133,7 @@ fn tractions_before_steady_rolling_do_not_raise_the_reach_of_glued_elements() {
     }
 }
 
-/// An element whose bound is dropped beside glued ones rests where nothing moves.
+/// An element whose bound is dropped beside glued ones sticks if there is no motion.
 #[test]
 fn elements_without_bound_beside_glued_ones_rest_where_nothing_moves() {
     let (grid, g) = pressures(12, |i| if i % 12 < 6 { 1.0 } else { 1e20 });
@@ -156,7 +157,7 @@ fn shifted_ball(m: usize, coefficient: impl Fn(f64) -> f64) -> Report {
     report.friction.expect("friction")
 }
 
-/// Errors were a part of mu N, also where no traction reaches it: 4.8e4 for a force of 0.0013.
+/// The estimated error is a part of the force, also if no traction reaches mu p.
 #[test]
 fn the_error_of_glued_elements_is_a_part_of_the_force() {
     let of: [&dyn Fn(f64) -> f64; 4] =

@@ -1,4 +1,5 @@
-//! An ideal plastic layer, hardening 0, has the limits of its particles: those of a layer that hardens by next to nothing, which another method solves.
+//! An ideal plastic layer, with hardening 0, has the limits of its particles. It is compared with a layer that hardens by nearly 0, which another
+//! method solves.
 
 use contact_normal::friction::{Request, Solution};
 use contact_normal::grid::Grid;
@@ -18,7 +19,7 @@ fn ball() -> (Grid, Vec<f64>) {
     (grid, pressures(grid, &h, FORCE))
 }
 
-/// The tractions with both, of a step after `first` steps of a layer that hardens.
+/// The tractions with either layer. If `hardened`, a first step has a layer that hardens.
 fn both(pressure: &[f64], grid: &Grid, friction: &Friction<'_>, hardened: bool) -> [Solution; 2] {
     [0.0, 1e-6].map(|hardening| {
         let mut solver = solver(grid);
@@ -34,7 +35,7 @@ fn both(pressure: &[f64], grid: &Grid, friction: &Friction<'_>, hardened: bool) 
 fn assert_same([ideal, hardly]: [Solution; 2], what: &str) {
     let largest = hardly.traction.iter().flatten().fold(0.0f64, |most, q| most.max(q.abs()));
     for (i, (a, b)) in ideal.traction.iter().zip(&hardly.traction).enumerate() {
-        // The tolerance of 1e-9 of the rms slip, which one of 576 elements may have, and 1e-6 mm of slip at most by 1e-6 MPa/mm.
+        // The tolerance of 1e-9 of the rms slip, in one of 576 elements; and at most 1e-6 mm of slip times 1e-6 MPa/mm.
         assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-6 * largest, "{what}, element {i}: {a:?} {b:?}");
         let limit = ideal.particles[i].yield_limit;
         assert!(a[0].hypot(a[1]) <= limit * (1.0 + 1e-12), "{what}, element {i}: {a:?} of {limit}");
@@ -62,7 +63,7 @@ fn limits_move_with_the_particles_in_rolling() {
         let friction = Friction { motion, prescribed, yield_limits: Some(&limits), ..Friction::new(0.3) };
         let found = both(&pressure, &grid, &friction, false);
         let low = found[0].particles.iter().filter(|particle| particle.yield_limit < 39.0).count();
-        // A step of an element: the column has moved by one, and in steady rolling all particles come in fresh.
+        // The step is one element: the column has moved by one. In steady rolling all particles enter with fresh limits.
         assert_eq!(low, if motion == Motion::SteadyRolling { 0 } else { 24 }, "{motion:?}");
         assert_same(found, &format!("{motion:?}"));
     }
@@ -82,7 +83,7 @@ fn a_force_beyond_the_limits_of_the_particles_is_refused() {
     run(&mut solver(&grid), &pressure, &Friction { yield_limits: Some(&limits), ..friction }, TOLERANCE);
 }
 
-/// A step with a law and no layer leaves no limits: the layer of the next one is fresh, as beside the same tractions that the caller gives.
+/// A step with a law and without a layer keeps no limits. The layer of the next step is fresh, as with the same tractions given by the caller.
 #[test]
 fn a_layer_that_begins_after_a_law_is_fresh() {
     let (grid, pressure) = ball();

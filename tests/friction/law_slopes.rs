@@ -1,4 +1,4 @@
-//! How steep a law is, with its memory, and what is solved where it is steep.
+//! The slope of a law with its memory, and results with steep laws.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Branch, Fall, Friction, FrictionLaw};
@@ -9,7 +9,8 @@ use super::laws_steep::Draw;
 use super::laws_that_rise::{along, Scene, POISSON, TOLERANCE};
 use super::support::tangential;
 
-/// `law_slope` is the largest slope of the bound, memory of the particle's coefficient included, times the element's influence: by differences.
+/// `law_slope` is the largest slope of the bound, with the memory of the particle's coefficient, times the element's influence. It is compared with
+/// differences.
 #[test]
 fn the_slope_of_a_law_counts_its_memory() {
     let grid = Grid::new(1, 1, 1.0, 1.0).unwrap();
@@ -35,12 +36,12 @@ fn the_slope_of_a_law_counts_its_memory() {
         let fall_of = |slip: f64| (bound(slip) - bound(slip + 1e-8)) / 1e-8;
         let exact = own * places.map(fall_of).fold(0.0, f64::max);
         let slope = scene.solve(TOLERANCE).1.law_slope;
-        // Eight places to a factor of two: of slopes that are smooth in the logarithm they miss less than a hundredth; differences lose 1e-8.
+        // A fine geometric sequence of slips misses less than a hundredth of the largest slope; differences have an error of 1e-8.
         assert!((slope - exact).abs() <= 1e-2 * exact + 1e-6, "{k} {law:?} {had}: {slope} {exact}");
     }
 }
 
-/// Three solutions of one element are said.
+/// An element with three solutions has a slope above one.
 #[test]
 fn an_element_with_three_solutions_has_a_slope_above_one() {
     let law = FrictionLaw {
@@ -63,7 +64,7 @@ fn an_element_with_three_solutions_has_a_slope_above_one() {
     assert!(slips[3] > 2.0 * slips[1], "{slips:?}");
 }
 
-/// Where Newton's method ends without a solution, turns find that of the branch LOW.
+/// If Newton's method ends without a solution, turns of Coulomb's problem find that of the branch LOW.
 #[test]
 fn a_steep_law_that_turns_solve_is_solved_without_a_branch() {
     let wheel = Wheel::new(1);

@@ -1,4 +1,4 @@
-//! Laws of friction with tangential forces that are given: what creepages make of forces comes back.
+//! Laws of friction with given tangential forces: the forces of creepages give the creepages back.
 
 use contact_normal::friction::{Report, Request, Solution};
 use contact_normal::scene::{Coefficient, Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous};
@@ -12,7 +12,7 @@ fn by_force(friction: &Friction<'static>, force: [f64; 2]) -> Friction<'static> 
     Friction { prescribed: force.map(Prescribed::Force), ..*friction }
 }
 
-/// The force of a creepage, and what that force gives back.
+/// The solution for a creepage, and that for its force.
 fn there_and_back(wheel: &Wheel, friction: &Friction<'static>) -> [(Report, Solution); 2] {
     let (end, report, solution) = wheel.ended(friction, TOLERANCE);
     assert_eq!(end, Outcome::Converged, "{friction:?} {report:?}");
@@ -22,8 +22,8 @@ fn there_and_back(wheel: &Wheel, friction: &Friction<'static>) -> [(Report, Solu
     [(report, solution), (back, found)]
 }
 
-/// Creepages differ by what the tolerance leaves, once more for the solve that made the force: of residuals relative to the rigid slip the tolerance
-/// of the creepage, and of forces relative to mu N the tolerance times the creepage that a force takes there, by the chord of the creep curve to 2 % more
+/// The allowed difference of creepages, twice because the force comes from a solve as well. For residuals relative to the rigid slip it is the
+/// tolerance times the creepage. For forces relative to mu N it is the tolerance over the slope of the creep curve, by its chord to 2 % more
 /// creepage.
 fn allowed(wheel: &Wheel, friction: &Friction<'static>, (xi, force): (f64, f64)) -> f64 {
     let more = Friction { prescribed: [Prescribed::Creepage(1.02 * xi), friction.prescribed[1]], ..*friction };
@@ -48,13 +48,13 @@ fn forces_below_the_maximum_give_the_creepages_back() {
             }
             assert_eq!(count, again);
             let largest = solution.traction.iter().map(|q| q[0].hypot(q[1])).fold(0.0, f64::max);
-            // Tractions follow slips by the inverse of an operator whose condition number is below 1000: that of elements, 48, by its square, over 2.
+            // Tractions depend on slips by the inverse of an operator whose condition number is below 1000: that of 48 elements across, 48^2/2 at most.
             for (q, other) in solution.traction.iter().zip(&found.traction) {
                 assert!((q[0] - other[0]).hypot(q[1] - other[1]) <= 1e-4 * largest);
             }
             let as_found = Friction { prescribed: back.creepage.map(Prescribed::Creepage), ..friction };
             let [slip, bound, displaced] = left(&wheel, &as_found, &found);
-            // By forces the slip is compared with the displacements, too.
+            // With given forces the scale of the slip may be the displacements.
             let tolerance = 1.01 * TOLERANCE;
             assert!(slip <= tolerance * displaced.max(1.0) && bound <= tolerance, "{slip} {bound} {displaced}");
             assert!(back.products <= 2.5 * report.products, "{} {}", back.products, report.products);
@@ -62,7 +62,7 @@ fn forces_below_the_maximum_give_the_creepages_back() {
     }
 }
 
-/// Of the two creepages that carry a force below the maximum the smaller one is found; a force above it is carried by none.
+/// Two creepages carry a force below the maximum: the smaller one is found. No creepage carries a force above the maximum.
 #[test]
 fn the_smaller_creepage_is_found_and_a_force_above_the_maximum_is_none() {
     let wheel = Wheel::new(1);
@@ -77,7 +77,7 @@ fn the_smaller_creepage_is_found_and_a_force_above_the_maximum_is_none() {
     assert!(matches!(end, Outcome::Stagnated | Outcome::IterationLimit), "{end:?}");
 }
 
-/// Steps of transient rolling and shifts, and a layer that hardens.
+/// Steps of transient rolling, shifts, and a layer that hardens.
 #[test]
 fn steps_by_force_give_the_creepages_back() {
     let wheel = Wheel::new(1);
@@ -101,7 +101,7 @@ fn steps_by_force_give_the_creepages_back() {
             assert_eq!(end, Outcome::Converged, "{given:?} {back:?}");
             let Prescribed::Creepage(exact) = creepage[0] else { panic!("creepages") };
             println!("{step} {exact} {:?} products {} {}", back.creepage, report.products, back.products);
-            // The tolerance of both solves, of forces over mu N: creepages follow them by a factor below 5, for `d(F/(mu N))/d(ln creepage)` is above .2.
+            // The tolerance of both solves, of forces over mu N, times 5: `d(F/(mu N))/d(ln creepage)` is above .2.
             assert!((back.creepage[0] / exact - 1.0).abs() <= 10.0 * TOLERANCE, "{exact} {:?}", back.creepage);
             assert!(back.creepage[1].abs() <= 10.0 * TOLERANCE * exact);
             assert_eq!(report.certificate.slip_count, back.certificate.slip_count);
@@ -118,14 +118,14 @@ fn one_force_may_be_given_beside_a_creepage() {
     let mixed = Friction { prescribed: [Prescribed::Creepage(0.003), Prescribed::Force(report.force[1])], ..friction };
     let (end, back, _) = wheel.ended(&mixed, TOLERANCE);
     assert_eq!(end, Outcome::Converged);
-    // As above: the other force follows the creepage that is found.
+    // The allowed difference is that of the creepages.
     let allowed = allowed(&wheel, &friction, (0.003, report.force[0]));
     assert!((back.force[0] / report.force[0] - 1.0).abs() <= 10.0 * TOLERANCE, "{:?} {:?}", back.force, report.force);
     assert!(back.creepage[1].abs() <= allowed, "{:?} {allowed}", back.creepage);
     assert_eq!(mixed.coefficient, Coefficient::Uniform(0.33));
 }
 
-/// A run that is cut short tells how much of the force lacks.
+/// After a run that is cut short the missing part of the force is in the residual.
 #[test]
 fn a_force_that_is_not_met_counts_in_the_residual() {
     let wheel = Wheel::new(1);

@@ -1,4 +1,5 @@
-//! Laws that fall so steeply that one solution is not sure: what is called solved meets the conditions, and the rest is said not to be.
+//! Laws that fall so steeply that several solutions are possible. A converged result meets the conditions; any other has a status without a
+//! certificate.
 
 use contact_normal::friction::{Report, Solution, SLIP};
 use contact_normal::scene::{Branch, Coefficient, Fall, Friction, FrictionLaw, Motion};
@@ -8,7 +9,7 @@ use super::laws::{left, Wheel, RUNNING};
 
 const TOLERANCE: f64 = 1e-6;
 
-/// Numbers in 0..1, always the same.
+/// Pseudo-random numbers in 0..1 from a fixed seed.
 pub struct Draw(pub u64);
 
 impl Draw {
@@ -30,7 +31,7 @@ fn is_end(end: Outcome) -> bool {
     matches!(end, Outcome::Converged | Outcome::Stagnated | Outcome::IterationLimit)
 }
 
-/// What is converged meets the conditions of its law by direct sums, and says how steep it is.
+/// Whether a solve converged. Then its conditions hold by direct sums; otherwise its residual is above the tolerance.
 fn is_solved(wheel: &Wheel, friction: &Friction<'_>, (end, report, found): &(Outcome, Report, Solution)) -> bool {
     assert!(is_end(*end), "{friction:?} {end:?}");
     if *end != Outcome::Converged {
@@ -43,7 +44,7 @@ fn is_solved(wheel: &Wheel, friction: &Friction<'_>, (end, report, found): &(Out
     true
 }
 
-/// A scene whose `law_slope` is this: without memory the slope is as 1/half_speed, with it nearly.
+/// A scene with this `law_slope`: without memory the slope is proportional to 1/half_speed, with memory nearly.
 fn steep(wheel: &Wheel, friction: &Friction<'static>, slope: f64) -> Friction<'static> {
     let mut found = *friction;
     for _ in 0..6 {
@@ -83,11 +84,11 @@ fn steep_laws_are_certified_or_said_not_to_be_solved() {
         counts[range][usize::from(is_solved)] += 1;
     }
     println!("law_slope .7 to 1, 1 to 2, 2 to 3: [not solved, solved] {counts:?}");
-    // Some of each kind, or the test says nothing.
+    // Without some of each kind the test shows nothing.
     assert!(counts.iter().flatten().all(|count| *count > 0), "{counts:?}");
 }
 
-/// mu of each element by its slip, without memory, and `|q|` less the bounds, rms over that of the bounds at rest.
+/// mu of each element by its slip, without memory; and the rms of `|q|` less the bounds, relative to that of the bounds at rest.
 fn by_slips(wheel: &Wheel, friction: &Friction<'_>, found: &Solution) -> (Vec<f64>, f64) {
     let law = friction.law.unwrap();
     let (mut off, mut rest, mut mu) = (0.0, 0.0, Vec::new());
@@ -102,7 +103,8 @@ fn by_slips(wheel: &Wheel, friction: &Friction<'_>, found: &Solution) -> (Vec<f6
     (mu, (off / rest).sqrt())
 }
 
-/// What is left of the bounds in turns of a host, which solves Coulomb's problem with the bounds of the last slips: the least, and that of the last.
+/// The residuals of the bounds in turns of a host, which solves Coulomb's problem with the bounds of the last slips: the least one, and that of the
+/// last turn.
 fn by_hand(wheel: &Wheel, friction: &Friction<'static>, is_high: bool) -> (f64, f64) {
     let fastest = 0.33 * friction.law.unwrap().at(1e150).0;
     let mut mu = vec![if is_high { fastest } else { 0.33 }; wheel.grid.len()];
@@ -118,7 +120,7 @@ fn by_hand(wheel: &Wheel, friction: &Friction<'static>, is_high: bool) -> (f64, 
     (least, last)
 }
 
-/// Turns that do not settle end, without a certificate, and the result is the best of them.
+/// Turns that do not settle end without a certificate, and the result is the best of them.
 #[test]
 fn turns_without_an_end_give_the_best_of_them() {
     let (wheel, mut draw, mut ended, mut gain) = (Wheel::of(24, 22), Draw(7), 0, 1.0f64);
@@ -143,15 +145,15 @@ fn turns_without_an_end_give_the_best_of_them() {
             report.products
         );
         assert!(residual >= TOLERANCE, "{residual}");
-        // Turns of the library solve to a twentieth of what is left, so that they are others; and the way onto the circles changes a result.
+        // Turns of the library have a tolerance of a twentieth of the residual, so that they differ, and the projection of tractions changes a result.
         assert!(residual <= 1.5 * least, "{k}: {residual} {least}");
         (ended, gain) = (ended + 1, gain.max(last / residual));
     }
-    // There are such scenes, and the last turn would not do.
+    // Such scenes exist, and the last turn is worse than the best.
     assert!(ended > 3 && gain > 1.5, "{ended} {gain}");
 }
 
-/// Products that end before the turns do are said, with what is left then.
+/// If the products end before the turns do, the status is ITERATION_LIMIT, with the residual at that time.
 #[test]
 fn turns_beyond_the_limit_end_within_it() {
     let wheel = Wheel::of(24, 22);
@@ -162,16 +164,16 @@ fn turns_beyond_the_limit_end_within_it() {
             let (end, report, found) = wheel.limited(&friction, TOLERANCE, limit);
             println!("{branch:?} {limit} {:.3e} products {}", report.certificate.residual, report.products);
             assert_eq!(end, Outcome::IterationLimit);
-            // A turn and what follows it take a few, whatever the limit is.
+            // A turn and the certificate take a few products, whatever the limit is.
             assert!(report.products <= limit.max(20) as f64, "{limit}: {}", report.products);
-            // What is returned is not worse than its residual: by its own slips.
+            // The result is not worse than its residual, by its own slips.
             let (_, off) = by_slips(&wheel, &friction, &found);
             assert!(report.certificate.residual >= TOLERANCE.max(0.99 * off), "{off} {report:?}");
         }
     }
 }
 
-/// Coefficients ahead of the contact are of elements that no particle meets: with memory they change nothing.
+/// No particle meets the elements ahead of the contact, so that with memory their coefficients have no effect.
 #[test]
 fn particles_are_fresh_until_they_enter_the_contact() {
     let wheel = Wheel::of(24, 22);
@@ -185,7 +187,7 @@ fn particles_are_fresh_until_they_enter_the_contact() {
         assert_eq!(alike.traction[i], other.traction[i], "element {i}");
         assert_eq!(alike.particles[i], other.particles[i], "element {i}");
     }
-    // The law has changed what they carry.
+    // The law has changed the coefficients of particles.
     let changed = alike.particles.iter().zip(&wheel.pressure).any(|(had, p)| *p > 0.0 && had.coefficient < 0.329);
     assert!(changed);
 }

@@ -1,5 +1,5 @@
-//! Bounds that rise with the slip beside a law that falls: a layer that hardens, and memory of coefficients that differ between elements. Their
-//! conditions by direct sums and a march of its own, and single elements by bisection.
+//! Bounds that rise with the slip although the law falls: by a layer that hardens, and by memory of coefficients that differ between elements. The
+//! conditions are computed by direct sums and a forward sweep of the test, and single elements by bisection.
 
 use contact_normal::friction::{Report, Request, Solution};
 use contact_normal::grid::Grid;
@@ -28,7 +28,7 @@ impl Scene<'_> {
         (end, report, solver.solution().unwrap().clone())
     }
 
-    /// The bound of element i at a slip of a particle that had this coefficient and limit, and what it has then.
+    /// The bound of element i at a slip, for a particle with this coefficient and limit, and the new coefficient and limit.
     pub fn bound(&self, i: usize, slip: f64, (had, limit): (f64, f64)) -> (f64, (f64, f64)) {
         let (rest, mut mu) = (self.friction.coefficient.at(i), self.friction.coefficient.at(i));
         if let Some(law) = self.friction.law {
@@ -57,7 +57,7 @@ impl Scene<'_> {
         }
     }
 
-    /// What is left of the slip, relative to the displacements and the rigid slip, and of `|q| - g`, relative to the bounds at rest: rms.
+    /// The rms residuals: that of the slip relative to the rigid slip, and that of `|q| - g` relative to the bounds at rest.
     pub fn left(&self, found: &Solution) -> [f64; 2] {
         let Scene { grid, friction, .. } = self;
         let Coefficient::Uniform(soft) = friction.compliance else { panic!("one layer") };
@@ -104,7 +104,7 @@ fn falling(draw: &mut Draw, w: f64) -> FrictionLaw {
     FrictionLaw::new(fall, (0.4, 0.6), w * draw.between(0.5, 30.0), 1.0)
 }
 
-/// Of a dome on my x mx elements.
+/// Pressures of a dome on mx x my elements.
 fn dome(mx: usize, my: usize) -> Vec<f64> {
     let part = |k: usize, m: usize| ((k as f64 - 0.5 * (m as f64 - 1.0)) / (0.6 * m as f64)).powi(2);
     (0..mx * my).map(|i| (1.0 - part(i % mx, mx) - part(i / mx, my)).max(0.05)).collect()
@@ -140,10 +140,10 @@ fn one_element_under_a_law_on_a_layer_that_hardens_is_that_of_bisection() {
         let sticks = w <= a * layer.yield_limit;
         let exact = if sticks { w / a } else { bound(low) };
         let (end, report, found) = scene.solve(1e-9);
-        // It has one solution.
+        // The solution is unique.
         assert!(report.law_slope < 0.8, "{}", report.law_slope);
         assert_eq!(end, Outcome::Converged, "{k} {:?} {report:?}", scene.friction);
-        // The tolerance is relative to w and to .4, and slips change bounds by hardening times as much.
+        // The tolerance is relative to w and to .4; an error of the slip changes the bound by hardening times that error.
         let off = (found.traction[0][0] + exact).abs();
         assert!(off <= 1e-8 * (1.0 + w / a), "{k} {:?} {} {exact}", scene.friction, found.traction[0][0]);
         counts[usize::from(sticks)] += 1;
@@ -179,7 +179,7 @@ fn laws_on_layers_that_harden_are_solved() {
     assert!(solved > 150, "{solved}");
 }
 
-/// Solves a scene whose law falls slowly enough to be promised; false where it falls faster.
+/// Solves a scene. If its law is below the promised slope, it must be solved; otherwise returns false.
 fn is_solved(scene: &Scene<'_>, k: usize) -> bool {
     let (end, report, found) = scene.solve(TOLERANCE);
     if report.law_slope >= 0.5 {
@@ -190,7 +190,7 @@ fn is_solved(scene: &Scene<'_>, k: usize) -> bool {
     true
 }
 
-/// The tolerance; in a shift it is relative to displacements, too.
+/// Asserts the tolerance. In a shift it is relative to displacements as well.
 fn assert_solved(scene: &Scene<'_>, found: &Solution, k: usize) {
     let [slip, bound] = scene.left(found);
     let displaced = found.slip.iter().zip(0..).map(|(s, i)| {
@@ -202,7 +202,7 @@ fn assert_solved(scene: &Scene<'_>, found: &Solution, k: usize) {
     assert!(slip <= allowed && bound <= 1.01 * TOLERANCE, "{k} {:?} {slip} {bound}", scene.friction);
 }
 
-/// The particles of four elements come from others that are rougher or smoother.
+/// The particles of four elements come from elements with other coefficients.
 #[test]
 fn coefficients_that_differ_are_carried_with_the_particles() {
     let (mu, pressure) = ([0.7, 0.7, 0.4, 0.3], [0.61, 0.96, 0.96, 0.61]);
@@ -220,7 +220,7 @@ fn coefficients_that_differ_are_carried_with_the_particles() {
         let (end, report, found) = scene.solve(1e-8);
         println!("{branch:?} {end:?} {report:?}");
         assert_eq!(end, Outcome::Converged);
-        // By 19 turns over Coulomb's problem with a fifth of each change of the coefficients, to 9e-12.
+        // The reference: 19 turns of Coulomb's problem with a fifth of each change of the coefficients, to 9e-12.
         for (q, exact) in found.traction.iter().zip([0.30649, 0.16883, 0.11238, 0.06274]) {
             assert!((q[0] + exact).abs() <= 6e-6 && q[1] == 0.0, "{branch:?} {q:?} {exact}");
         }
@@ -233,7 +233,7 @@ fn memory_of_coefficients_that_differ_is_solved() {
     for k in 0..600 {
         let (mx, my) = (1 + (12.0 * draw.next()) as usize, 1 + (8.0 * draw.next()) as usize);
         let (grid, pressure) = (Grid::new(mx, my, 1.0, 1.0).unwrap(), dome(mx, my));
-        // From the leading edge on they grow, so that each particle lacks some of its element's.
+        // If coefficients grow from the leading edge on, each particle has less than its element.
         let grows = draw.next() < 0.5;
         let mut mu: Vec<f64> = (0..mx * my).map(|_| draw.between(0.1, 0.8)).collect();
         if grows {
@@ -258,7 +258,8 @@ fn memory_of_coefficients_that_differ_is_solved() {
     assert!(solved > 200 && rising > 100, "{solved} {rising}");
 }
 
-/// The law falls faster than the layer hardens, so that some forces below mu N have no creepage: the creepages end where they are no numbers any more.
+/// The law falls faster than the layer hardens, so that no creepage gives some forces below mu N. The search must not let creepages grow beyond the
+/// range of numbers.
 #[test]
 fn creepages_do_not_run_away_from_a_force_that_none_meets() {
     let pressure: Vec<f64> = (0..24).map(|k| 1.0 + 0.9 * (f64::from(k) * std::f64::consts::PI / 12.0).cos()).collect();
@@ -280,7 +281,7 @@ fn creepages_do_not_run_away_from_a_force_that_none_meets() {
         let scene = Scene { grid: Grid::new(24, 1, 1.0, 1.0).unwrap(), pressure: &pressure, friction };
         let (end, report, found) = scene.solve(1e-5);
         println!("{part} {end:?} {:?}", report.creepage);
-        // 1e30 times what mu p displaces.
+        // 1e30 times the displacements by mu p.
         assert!(found.slip.iter().flatten().all(|s| s.abs() < 1e41), "{part} {end:?} {:?}", report.creepage);
         unmet += usize::from(end != Outcome::Converged);
     }

@@ -1,4 +1,4 @@
-//! A thin elastic layer between the bodies: a compliance, uniform or one per element, beside the coefficients.
+//! A thin elastic layer between the bodies: a compliance, uniform or one per element, in addition to the coefficients.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
@@ -62,7 +62,7 @@ fn all_motions_meet_the_conditions() {
                     if motion == Motion::SteadyRolling {
                         continue;
                     }
-                    // A step from there.
+                    // The next step.
                     let prescribed = friction.prescribed.map(|prescribed| match prescribed {
                         Prescribed::Force(force) => Prescribed::Force(0.8 * force),
                         given => given,
@@ -97,7 +97,7 @@ fn one_compliance_for_each_element_is_the_uniform_one() {
     }
 }
 
-/// Compliances from 1 to 100 times the least, in random order.
+/// Compliances from 1 to 100 times `least`, in random order.
 fn random_compliances(n: usize, least: f64, seed: u64) -> Vec<f64> {
     let mut random = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     let next = |_| {
@@ -132,8 +132,7 @@ fn compliances_that_differ_by_a_hundred_times_take_few_products() {
     assert!(of_both[1] <= 2.0 * of_both[0], "{of_both:?} products, at most {most:?}, {of_motion:?}");
 }
 
-/// The tractions before are large beside the change of a nearly free step. Iterations compared them in other units than residuals, and ended at
-/// residuals of thousands of tolerances.
+/// The previous tractions are large relative to the change in a nearly free step. Residuals must be in the units of the tolerance.
 #[test]
 fn nearly_free_steps_beside_a_soft_layer_meet_the_tolerance() {
     for seed in 0..4 {

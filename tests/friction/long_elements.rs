@@ -1,4 +1,4 @@
-//! Rough lines of long elements, which is how a line contact is given: tractions displace all of a line nearly alike. And bounds of all sizes on two of them.
+//! Rough lines of long elements, as for line contacts: tractions displace the whole line nearly uniformly. Also bounds of any ratio on two elements.
 
 use std::f64::consts::TAU;
 
@@ -10,10 +10,10 @@ use contact_normal::solver::{self as normal, Options, Outcome};
 use super::steady::rolling;
 use super::support::{residual, solver};
 
-/// Of two products by different sums.
+/// The round-off of two products by different sums.
 const ROUND_OFF: f64 = 1e-9;
 
-/// Pressures on a line of waves of random phases, amplitudes falling as `k^-1.3`.
+/// Pressures on a line of waves with random phases and amplitudes that fall as `k^-1.3`.
 fn pressures(grid: &Grid, seed: u64) -> (Vec<f64>, f64) {
     let mut state = seed;
     let mut next = || {
@@ -35,7 +35,7 @@ fn pressures(grid: &Grid, seed: u64) -> (Vec<f64>, f64) {
     (solved.state().p.clone(), largest)
 }
 
-/// Gradients and Newton's method go round in circles on most of them; the projected Newton method goes downhill.
+/// Gradients and Newton's method cycle on most of these lines. The projected Newton method descends.
 #[test]
 fn shifts_of_rough_lines_are_solved_however_long_their_elements() {
     for (seed, dy) in [(1, 1e5), (2, 1e5), (3, 1e5), (4, 1e5), (5, 1e4), (6, 1e4), (7, 1e3)] {
@@ -53,7 +53,7 @@ fn shifts_of_rough_lines_are_solved_however_long_their_elements() {
     }
 }
 
-/// Bounds below the round-off of the largest one: they carry nothing that counts, and their elements stick or slip as their slip says.
+/// Bounds below the round-off of the largest one: their tractions are negligible, and their elements stick or slip by their slip.
 #[test]
 fn bounds_of_any_ratio_roll() {
     let grid = Grid::new(2, 1, 1.0, 1.0).unwrap();

@@ -1,11 +1,11 @@
-//! The tangential problem: every number is compared with a closed form, a quadrature, a direct sum, or another program's result.
+//! The tangential problem: every number is compared with a closed form, a quadrature, a direct sum, or the result of another program.
 
 mod batch;
 mod bounds_of_laws;
 mod branches;
 mod cancelling;
 #[path = "../problems/families/case.rs"]
-#[allow(dead_code)] // of it, the shapes
+#[allow(dead_code)] // only the shapes are used
 mod case;
 mod cattaneo;
 mod coated;
@@ -18,7 +18,7 @@ mod estimates;
 mod estimates_of_small_shifts;
 mod forces;
 mod glued;
-#[allow(dead_code)] // what docs/reliability_friction.md has
+#[allow(dead_code)] // only the cases of docs/reliability_friction.md are used
 mod hard;
 mod ideal_layer;
 mod law_slopes;

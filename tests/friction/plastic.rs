@@ -1,4 +1,4 @@
-//! A layer between the bodies that yields, against what CONTACT printed (its examples carter_plast, catt2d_plast and plastic_3bl;
+//! A layer between the bodies that yields, compared with the output of CONTACT (its examples carter_plast, catt2d_plast and plastic_3bl;
 //! eve70a/CONTACT).
 
 use contact_normal::friction::{Report, Solution, PLASTIC, SLIP, STICK};
@@ -14,7 +14,7 @@ fn along(xi: f64) -> [Prescribed; 2] {
     [Prescribed::Creepage(xi), Prescribed::Creepage(0.0)]
 }
 
-/// Elements that stick, that slip, and that the layer bounds.
+/// The numbers of elements that stick, that slip, and at the yield limit of the layer.
 fn counts(solution: &Solution) -> [usize; 3] {
     [STICK, SLIP, PLASTIC].map(|what| solution.stick_slip.iter().filter(|side| **side == what).count())
 }
@@ -54,7 +54,7 @@ fn steady_rolling_over_a_layer_that_yields_is_that_of_contact() {
 }
 
 /// `Fx/(.5 N)`; stick, slip, plastic.
-// .6366 is what was printed, not 2/pi.
+// .6366 is the printed value, not 2/pi.
 #[allow(clippy::approx_constant)]
 #[rustfmt::skip]
 const STEPS: [(f64, [usize; 3]); 49] = [
@@ -75,7 +75,7 @@ fn steps_from_a_shift_to_rolling_are_those_of_contact() {
     let layer = Some(PlasticLayer { yield_limit: 35.0, hardening: 123_000.0 });
     let shift = |xi: f64| Friction { prescribed: along(xi), layer, ..Friction::new(0.5) };
     let part = |report: &Report| report.force[0] / (0.5 * FORCE);
-    // The shift of which the force is .6 mu N: printed as -1.976e-3.
+    // The shift whose force is .6 mu N, printed as -1.976e-3.
     let (mut low, mut high) = (-2.1e-3, -1.8e-3);
     for _ in 0..20 {
         let middle = 0.5 * (low + high);
@@ -106,8 +106,8 @@ fn steps_from_a_shift_to_rolling_are_those_of_contact() {
 /// The shear modulus of a layer of .02 mm, its yield limit and hardening, and its steps.
 type Sheared = (f64, f64, f64, &'static [(f64, f64)]);
 
-/// One element of 1 mm x 1 mm under 900 N with mu = .7 on three layers, the last with two yield limits: shifts and the tractions that CONTACT printed in four
-/// digits. Its first case has no layer.
+/// One element of 1 mm x 1 mm under 900 N with mu = .7 on four layers: shifts, and the tractions that CONTACT printed to four digits. The first case
+/// has no layer.
 const BARE: (f64, f64) = (-0.001, 84.97);
 #[rustfmt::skip]
 const SHEARED: [Sheared; 4] = [
@@ -130,7 +130,7 @@ const SHEARED: [Sheared; 4] = [
     ]),
 ];
 
-/// Half of the last of four digits that are printed.
+/// Half of the last of four printed digits.
 fn half_a_digit(printed: f64) -> f64 {
     if printed < 100.0 {
         0.005
@@ -161,7 +161,7 @@ fn one_element_on_a_layer_that_hardens_or_softens_is_that_of_contact() {
             };
             let (_, solution) = run(&mut solver, &[900.0], &friction, 1e-12);
             let found = solution.traction[0][0];
-            // By hand: q = q' - xi/(a0 + c) in stick, else what the layer carries after its slip.
+            // In closed form: q = q' - xi/(a0 + c) in stick, otherwise the limit of the layer after its slip.
             let (stiff, elastic) = (own + compliance, q - xi / (own + compliance));
             if elastic.abs() > limit {
                 let slip = (elastic.abs() - limit) * stiff / (1.0 + hardening * stiff);

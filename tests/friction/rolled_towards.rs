@@ -1,4 +1,4 @@
-//! Coefficients of bodies that relax and roll one way, in steps that go another way: refused by name.
+//! Coefficients of bodies that relax and roll in one direction, in steps of another direction: refused by name.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
 
@@ -11,7 +11,7 @@ use contact_normal::solver::{solve, solve_tangential, Options, Outcome, Solver};
 use contact_normal::visco::{rolling_table, RollingBody, Series};
 
 const M: usize = 9;
-/// Two more elements than the grid, for a step.
+/// The tables have two more offsets than the grid, for a step.
 const REACH: (usize, usize) = (M + 2, M + 2);
 const WIDTH: usize = 2 * (M + 2);
 
@@ -19,7 +19,7 @@ fn body(relaxing: f64, compliance: f64) -> RollingBody {
     RollingBody { compliance, series: Series::new(1.0, &[relaxing], &[1.0]).expect("a series") }
 }
 
-/// Coefficients of pressures and of tractions of bodies that roll at a speed; none: that do not relax.
+/// The coefficients of pressures and of tractions of bodies that roll at a speed, or, for None, of bodies that do not relax.
 fn coefficients(speed: Option<f64>) -> (Vec<f64>, [Vec<f64>; 3]) {
     let relaxing = if speed.is_some() { 0.6 } else { 0.0 };
     let both = |compliance: f64| [body(relaxing, compliance), body(relaxing, compliance)];
@@ -28,7 +28,7 @@ fn coefficients(speed: Option<f64>) -> (Vec<f64>, [Vec<f64>; 3]) {
     (normal, rolling_tables(REACH, (1.0, 1.0), (&both(0.5), [0.3; 2]), speed).unwrap())
 }
 
-/// x and y exchanged: of bodies that roll along y.
+/// A table with x and y exchanged: that of bodies that roll along y.
 fn turned(table: &[f64]) -> Vec<f64> {
     (0..table.len()).map(|k| table[k % WIDTH * WIDTH + k / WIDTH]).collect()
 }
@@ -53,7 +53,7 @@ impl Case {
         Scene { influence, ..self.scene_of_tractions(motion, step, false) }
     }
 
-    /// With tangential coefficients alone.
+    /// A scene with tangential coefficients only.
     fn scene_of_tractions(&self, motion: Motion, (direction, distance): (f64, f64), by_row: bool) -> Scene<'_> {
         let coefficients = self.own.each_ref().map(|values| &values[..]);
         let (cx, cy) = (REACH.0, if by_row { M } else { REACH.1 });
@@ -71,11 +71,11 @@ impl Case {
         }
     }
 
-    /// Whether a solve is refused, a solve on a handle that was set up with a step along +x or -x, and one of the tangential problem alone.
+    /// The refusals of a solve, of a solve on a handle that was set up with a step along +x or -x, and of the tangential problem alone.
     fn refusals(&self, motion: Motion, step: (f64, f64), set_up: Motion, direction: f64) -> [Option<Error>; 3] {
         let (scene, options) = (self.scene(motion, step), Options::default());
         let mut handle = Solver::new(&self.scene(set_up, (direction, 1.0)), &options).unwrap();
-        // The handle has the coefficients; it need not be told them again.
+        // The handle has the coefficients: the scene need not name them.
         let unnamed = Scene { influence: None, ..scene.clone() };
         let pressure = vec![1.0; M * M];
         [
@@ -89,7 +89,7 @@ impl Case {
 const STEPS: [(f64, f64); 6] =
     [(0.0, 1.0), (PI, 1.0), (FRAC_PI_2, 1.0), (-FRAC_PI_2, 2.0), (FRAC_PI_4, SQRT_2), (-3.0 * FRAC_PI_4, 2.0 * SQRT_2)];
 
-/// Both tables are of one direction: all steps but those that go there are refused, and the message says which one goes and what to do.
+/// Both tables have one direction. Steps in other directions are refused, and the message names the right direction and a remedy.
 #[test]
 fn steps_that_go_another_way_than_the_bodies_roll_are_refused() {
     for (speed, direction, way) in [(1.5, 0.0, "towards +x"), (-1.5, PI, "towards -x")] {
@@ -114,7 +114,8 @@ fn steps_that_go_another_way_than_the_bodies_roll_are_refused() {
     }
 }
 
-/// Only the coefficients of pressures are of one direction; those of tractions are even. Rolling from step to step is told apart, too; a shift has no direction.
+/// Only the coefficients of pressures have a direction; those of tractions are even. The set-up of a handle with transient rolling is also checked. A
+/// shift has no direction.
 #[test]
 fn so_are_those_of_pressures_alone() {
     let (_, even) = coefficients(None);
@@ -124,7 +125,7 @@ fn so_are_those_of_pressures_alone() {
         for motion in [Motion::SteadyRolling, Motion::TransientRolling] {
             for step in STEPS {
                 let [one, handle, alone] = case.refusals(motion, step, Motion::Shift, 0.0);
-                // Pressures that are given have no coefficients.
+                // Given pressures need no coefficients.
                 assert_eq!(alone, None);
                 for refusal in [one, handle] {
                     if step.0 == fits {
@@ -154,8 +155,7 @@ fn per_row(table: &[f64]) -> Vec<f64> {
     (0..M * M * WIDTH).map(value).collect()
 }
 
-/// Tables per loaded row of pressures: those of bodies that relax need no symmetry, and have one direction. The answer meets the conditions of contact by
-/// direct sums.
+/// Row tables of pressures of bodies that relax need no symmetry, and have one direction. The result meets the conditions of contact by direct sums.
 #[test]
 fn so_are_row_tables_of_pressures() {
     let (_, even) = coefficients(None);
@@ -194,7 +194,7 @@ fn so_are_row_tables_of_pressures() {
     }
 }
 
-/// Even coefficients go with any step.
+/// Even coefficients allow steps in any direction.
 #[test]
 fn even_ones_go_any_way() {
     let case = Case::new(coefficients(None));

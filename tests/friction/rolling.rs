@@ -1,4 +1,4 @@
-//! Steps of transient rolling: their conditions recomputed, in any direction; a sequence that becomes steady.
+//! Steps of transient rolling: recomputed conditions, in any direction; a sequence that becomes steady.
 
 use std::f64::consts::PI;
 
@@ -57,7 +57,7 @@ fn steps_in_any_direction_and_of_any_length_meet_the_conditions() {
     }
 }
 
-/// A step of 3e5 by 3e5 elements: a table of the coefficients as far as that would take 2 TB.
+/// A step of 3e5 by 3e5 elements: a table of the coefficients up to this offset would take 2 TB.
 #[test]
 fn a_long_step_of_whole_elements_takes_no_more_memory_than_a_short_one() {
     let (grid, g) = ellipse(20, 1.0);
@@ -95,7 +95,7 @@ fn previous_tractions_may_be_given_or_kept() {
     let given = Friction { previous: Previous::Given([&x, &y]), ..step };
     let (_, of_given) = run(&mut solver(&grid, 0.3), &g, &given, 1e-8);
     assert_eq!(of_kept.traction, of_given.traction);
-    // From rest is something else, and nothing is kept by a new solver.
+    // A step from rest differs, and a new solver keeps no tractions.
     let (_, from_rest) = run(&mut solver(&grid, 0.3), &g, &step, 1e-8);
     assert_ne!(of_kept.traction, from_rest.traction);
     let continued = Friction { previous: Previous::Kept, ..step };
@@ -105,8 +105,8 @@ fn previous_tractions_may_be_given_or_kept() {
 
 #[test]
 fn a_shift_back_and_forth_remembers_where_it_was() {
-    // Mindlin and Deresiewicz: after a shift back to where it began, tractions remain, and going on to the first shift restores the first
-    // tractions where nothing slipped beyond.
+    // Mindlin and Deresiewicz: after a shift back to the beginning tractions remain. The first shift again restores the first tractions, if nothing
+    // has slipped farther.
     let (grid, g) = ellipse(32, 1.0);
     let to = |length: f64| Friction {
         prescribed: [Prescribed::Creepage(length), Prescribed::Creepage(0.0)],
@@ -117,10 +117,10 @@ fn a_shift_back_and_forth_remembers_where_it_was() {
     let (back_report, _) = run(&mut solver, &g, &Friction { previous: Previous::Kept, ..to(0.8) }, 1e-8);
     let (again_report, again) = run(&mut solver, &g, &Friction { previous: Previous::Kept, ..to(-0.8) }, 1e-8);
     let carried: f64 = g.iter().sum::<f64>() * grid.element_area();
-    // Unloading: slips half as far as loading, with twice the bound: F(0) = F(-d) - 2 F(d/2).
+    // Unloading is loading with twice the bound by half the shift: F(0) = F(-d) - 2 F(d/2).
     let (half, _) = run(&mut super::support::solver(&grid, 0.0), &g, &to(-0.4), 1e-8);
     let expected = first_report.force[0] - 2.0 * half.force[0];
-    // Both discretised alike; a residual of 1e-8.
+    // Both have the same discretisation, and a residual of 1e-8.
     assert!((back_report.force[0] - expected).abs() <= 1e-5 * carried, "{} {expected}", back_report.force[0]);
     assert!((again_report.force[0] - first_report.force[0]).abs() <= 1e-6 * carried);
     let apart = first.traction.iter().zip(&again.traction).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
@@ -145,7 +145,7 @@ fn rolling_becomes_steady() {
     }
     assert!(changes[119] <= 1e-5, "{}", changes[119]);
     assert!(products / 120.0 <= 20.0, "{}", products / 120.0);
-    // The steady problem: u' is that of the very tractions. By direct sums.
+    // The steady problem, by direct sums: u' is that of the same tractions.
     let (mut here, mut there) = (vec![[0.0; 2]; grid.len()], vec![[0.0; 2]; grid.len()]);
     let tangential = tangential(&grid, nu);
     dense::apply(&tangential, &grid, (0.0, 0.0), &last.traction, &mut here);

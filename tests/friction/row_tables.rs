@@ -1,4 +1,4 @@
-//! Tangential coefficients of the caller's own, one table per loaded row.
+//! The caller's own tangential coefficients, one table per loaded row.
 
 use contact_normal::error::Error;
 use contact_normal::friction::{Solver, Tangential, Vector};
@@ -17,11 +17,11 @@ use super::support::{residual_by, run, tangential};
 const BEYOND: usize = 3;
 const NU: f64 = 0.3;
 
-/// How a row is turned about the normal, and how much softer it is.
+/// The rotation of a row about the normal, and the factor of its compliance.
 type Row = (f64, f64);
 
-/// `A_IJ = f_I f_J R_I' A(I - J) R_J`: symmetric and positive definite as the half-space's A is. Its rows are turned and softer by
-/// `of(row)`. xx, yy, xy of a loaded row, a row and an offset.
+/// `A_IJ = f_I f_J R_I' A(I - J) R_J` is symmetric and positive definite, as the half-space's A is. `of(row)` has the rotation and the factor of a
+/// row. Returns xx, yy and xy by loaded row, row and offset.
 fn tables(grid: &Grid, of: &dyn Fn(usize) -> Row) -> [Vec<f64>; 3] {
     let (cx, half_space) = (grid.mx + BEYOND, tangential(grid, NU));
     let mut tables = [const { Vec::new() }; 3];
@@ -49,7 +49,7 @@ fn influence<'a>(grid: &Grid, tables: &'a [Vec<f64>; 3]) -> TangentialInfluence<
     TangentialInfluence { cx: grid.mx + BEYOND, cy: grid.my, by_row: true, coefficients, cross: None, scale: 1.0 }
 }
 
-/// Term by term, and yx by the symmetry of the whole.
+/// Displacements term by term; yx follows from the symmetry.
 fn sums(grid: &Grid, tables: &[Vec<f64>; 3], by: (f64, f64), q: &[Vector], u: &mut [Vector]) {
     let (cx, my) = ((grid.mx + BEYOND) as i64, grid.my);
     let by = by.0.round() as i64;
@@ -97,7 +97,7 @@ fn motions() -> Vec<Friction<'static>> {
 
 #[test]
 fn all_motions_meet_the_conditions_by_direct_sums() {
-    // One grid alone, and several; odd numbers of rows.
+    // With and without coarser grids; odd numbers of rows.
     for (mx, my) in [(14, 11), (30, 25)] {
         let grid = Grid::new(mx, my, 1.0, 0.8).unwrap();
         let tables = tables(&grid, &uneven);
@@ -117,7 +117,7 @@ fn all_motions_meet_the_conditions_by_direct_sums() {
                 if friction.motion == Motion::SteadyRolling {
                     continue;
                 }
-                // A step from there, with a box of as many rows that begins elsewhere.
+                // The next step, with a box of as many rows at another place.
                 let moved = ellipse(&grid, (x - 1.0, y + 0.7), (0.8 * x, 0.8 * y));
                 let next = Friction { previous: Previous::Kept, ..friction };
                 let (report, after) = run(&mut solver, &moved, &next, 1e-6);
@@ -155,7 +155,7 @@ fn equal_rows_give_what_tables_of_offsets_give() {
         let mut half_space = Solver::new(grid, tangential(&grid, NU), true, &Threads::One);
         let (_, known) = run(&mut half_space, &pressure, &friction, 1e-9);
         for (a, b) in known.traction.iter().zip(&found.traction) {
-            // What a residual of 1e-9 hides of tractions of .3 (docs/friction.md: 1e-5 at 1e-6, less by its square root).
+            // The error of tractions of .3 with a residual of 1e-9 (docs/friction.md: 1e-5 for 1e-6, and it falls with the square root).
             assert!((a[0] - b[0]).hypot(a[1] - b[1]) <= 0.3 * 1e-5, "{friction:?}: {a:?} {b:?}");
         }
     }
@@ -180,7 +180,7 @@ fn a_single_row_and_a_single_column_are_solved() {
 
 #[test]
 fn threads_change_no_bit() {
-    // Four times the elements of the box around C are more than 110 x 110: below that no product is shared.
+    // Four times the elements of the box around C exceed 110 x 110, below which products are not shared.
     let grid = Grid::new(80, 52, 1.0, 0.8).unwrap();
     let tables = tables(&grid, &uneven);
     let pressure = ellipse(&grid, (39.0, 25.0), (38.0, 24.0));
@@ -206,7 +206,7 @@ fn what_is_no_symmetric_operator_or_does_not_fit_is_refused_by_name() {
         let scene = Scene { friction: Some(friction), ..Scene::new(grid, &[], bodies, Load::Force(1.0)) };
         solve_tangential(&scene, &pressure, &Options::default(), None).err().unwrap()
     };
-    // Loaded row 1, row 3, offset 2.
+    // The place of loaded row 1, row 3, offset 2.
     let place = (6 + 3) * width + 8 + BEYOND + 2;
     let changed = |table: usize, at: usize, by: &dyn Fn(f64) -> f64| {
         let mut tables = good.clone();
@@ -253,7 +253,7 @@ fn a_handle_keeps_them_beside_row_tables_of_pressures() {
     let grid = Grid::new(20, 14, 0.1, 0.1).unwrap();
     let h = paraboloid(&grid, 0.05);
     let tables = tables(&grid, &uneven);
-    // Pressures displace as tractions in x do.
+    // The coefficients of pressures are those of tractions in x.
     let normal = RowTables::new(20 + BEYOND, 14, &tables[0], &grid).unwrap();
     let (half, options) =
         (tables.clone().map(|table| table.iter().map(|value| 0.5 * value).collect()), Options::default());
@@ -278,7 +278,7 @@ fn a_handle_keeps_them_beside_row_tables_of_pressures() {
     handle.solve(&unnamed, &cold, None, None).unwrap();
     let (fresh, ..) = solve(&scene(&half), &options).unwrap();
     assert_eq!(tractions(&handle), tractions(&fresh));
-    // Tables of offsets are others.
+    // Tables of offsets are refused on this handle.
     let offsets = TangentialInfluence { by_row: false, ..friction.influence.unwrap() };
     let error = handle.set_tangential_influence(&Friction { influence: Some(offsets), ..*friction }).err().unwrap();
     assert!(error.to_string().contains("friction->influence is given"), "{error}");

@@ -1,4 +1,4 @@
-//! Derivatives of the forces by creepages and spin, against differences; a series of steps, each from the last solution.
+//! Derivatives of the forces by creepages and spin, compared with differences; a series of steps, each from the last solution.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
@@ -32,7 +32,7 @@ fn derivatives_are_those_of_differences() {
             let (report, _) = run(&mut solver(&grid, NU), &g, &friction, 1e-8);
             let found = report.sensitivities.unwrap();
             let largest = found.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
-            // The step is so small that hardly an element changes between stick and slip.
+            // With so small a step hardly any element changes between stick and slip.
             let step = 1e-5;
             for by in 0..3 {
                 let mut change = [0.0; 3];
@@ -64,7 +64,7 @@ fn what_carries_nothing_or_moves_nothing_has_derivatives_of_zero() {
         let without = Friction { coefficient: Coefficient::Uniform(0.0), ..friction };
         let (report, _) = run(&mut solver(&disc, NU), &g, &without, 1e-8);
         assert_eq!(report.sensitivities, Some([[0.0; 3]; 3]), "{motion:?}");
-        // It sticks: dq = -dw/A. Without an offset the slip by spin in the middle is 0.
+        // The element sticks: dq = -dw/A. Without an offset the slip by spin at its centre is 0.
         let centred = Friction { spin_offset: 0.0, ..friction };
         let (report, _) = run(&mut solver(&one, NU), &[1.0], &centred, 1e-8);
         let found = report.sensitivities.unwrap();
@@ -106,7 +106,7 @@ fn a_series_goes_on_from_the_last_solution() {
                 assert!((a.creepage[i] - b.creepage[i]).abs() <= 1e-5, "{k}: {:?} {:?}", a.creepage, b.creepage);
             }
         }
-        // The last solution is a better start than coarse grids give, and it saves their products.
+        // The last solution is a better start than that of coarse grids, without their products.
         assert!(products < 0.9 * cold, "{products} {cold}");
     }
 }

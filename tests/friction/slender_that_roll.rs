@@ -1,4 +1,4 @@
-//! Coefficients of slender elements of bodies that relax and roll, to all digits.
+//! Coefficients of slender elements for bodies that relax and roll, to all digits.
 //!
 //! The numbers below are sums over panels by mpmath 1.3 with 30 digits, each between two of the offsets `+-1/2 +- 2^k` and `kx + 2 k L`:
 //!
@@ -12,7 +12,8 @@
 //! value = at(kx, ky*dy) + 19/L*sum(quad(lambda x: exp(-(x-kx)/L)*at(x, ky*dy), [p, q]) for p, q in panels)     # up to kx + 80 L, L = 2
 //! ```
 //!
-//! Two bodies of G = 1 and nu = .3, of whose modulus .95 relaxes in .1, at a speed of 1: they give way to 20 times as much in the end, and creep in 2 elements.
+//! Two bodies with G = 1 and nu = .3. A part of .95 of the modulus relaxes in a time of .1 at a speed of 1: the final compliance is 20 times the
+//! instantaneous one, with creep over 2 elements.
 
 use contact_normal::friction::rolling_tables;
 use contact_normal::visco::{rolling_table, RollingBody, Series};
@@ -90,7 +91,7 @@ fn coefficients_of_slender_elements_are_right_to_all_digits() {
         let [xx, yy, xy] = rolling_tables(reach, (1.0, dy), (&bodies(0.5), [0.3; 2]), 1.0).unwrap();
         for (found, known) in [normal[k], xx[k], yy[k], xy[k]].into_iter().zip(known) {
             worst = worst.max((found - known).abs() / known.abs().max(f64::MIN_POSITIVE));
-            // Of differences of terms up to some ten times as large, each to some units of round-off.
+            // Differences of terms up to some ten times as large, each with some units of round-off.
             assert!((found - known).abs() <= 1e-13 * known.abs(), "{dy} ({kx}, {ky}): {found} {known}");
         }
     }

@@ -1,4 +1,4 @@
-//! Steady rolling: Carter's cylinder, its conditions by direct sums in any direction, the state that transient rolling leads to.
+//! Steady rolling: Carter's cylinder, its conditions by direct sums in any direction, the limit of transient rolling.
 
 use std::f64::consts::PI;
 
@@ -15,7 +15,7 @@ use super::support::{residual, run, solver};
 fn carter(m: usize) -> (Report, usize, f64) {
     let dx = 2.2 / m as f64;
     let grid = Grid::new(m, 1, dx, 200.0).unwrap();
-    // The middle of the cylinder lies beside that of the grid.
+    // The middle of the cylinder is not that of the grid.
     let h: Vec<f64> = (0..m).map(|i| 0.001 * (-1.07 + (i as f64 + 0.5) * dx).powi(2)).collect();
     let friction = Friction {
         motion: Motion::SteadyRolling,
@@ -38,14 +38,14 @@ fn carter(m: usize) -> (Report, usize, f64) {
 fn a_cylinder_rolls_as_carter_says() {
     let (found, in_contact, sideways) = carter(55);
     let part = |report: &Report| report.force[0] / (0.3 * 35780.0);
-    // The digits that CONTACT prints.
+    // The printed digits of CONTACT.
     assert!((part(&found) - 0.6480).abs() <= 5e-5, "{}", part(&found));
     assert_eq!((in_contact, found.certificate.stick_count, found.certificate.slip_count), (50, 30, 20));
     assert_eq!(sideways, 0.0);
     let mut before = f64::INFINITY;
     for m in [110, 220, 440, 880, 1760] {
         let (found, ..) = carter(m);
-        // Exact: 1 - (a'/a)^2 with a stick area of a' = .6 a. First order; an element more or less is 2/m of the contact.
+        // Exact: 1 - (a'/a)^2 for a stick area of a' = .6 a. The error is of first order; one element is 2/m of the contact.
         let error = (part(&found) - 0.64).abs();
         assert!(error <= 0.8 / m as f64 && error < 0.9 * before, "{m}: {error} {before}");
         before = error;
@@ -61,7 +61,7 @@ pub fn rolling(creepage: [f64; 2], spin: f64) -> Friction<'static> {
     }
 }
 
-/// The conditions by direct sums.
+/// Checks the conditions by direct sums.
 fn check(grid: &Grid, g: &[f64], friction: &Friction<'_>, found: (&Report, &Solution)) {
     let left = residual((grid, NU), g, friction, &[], found);
     // The tolerance, and round-off of two products.
@@ -100,7 +100,7 @@ fn steady_rolling_in_any_direction_and_by_any_step_meets_the_conditions() {
             }
         }
     }
-    // Half as many again as are taken. Elements do not resolve steps that are shorter than they are.
+    // One and a half times the products of this case. Elements do not resolve shorter steps.
     assert!(most <= 60.0 && most_of_short <= 200.0, "{most} {most_of_short}");
 }
 
@@ -116,13 +116,13 @@ fn cases_of_other_programs_are_met() {
                 Prescribed::Force(_) => report.creepage,
             };
             for (found, known) in of_finest.into_iter().zip(found) {
-                // The known ones are those of 256 elements, 4 times as fine; the elements are 3 % of the half-axis.
+                // The known values are those of 256 elements across, 4 times as fine. Here an element is 3 % of the half-axis.
                 assert!((found - known).abs() <= 0.02 * known.abs() + 0.004, "{b} {}: {found} {known}", case.name);
             }
             if k % 4 == 0 {
                 check(&case.grid, &case.bound, &case.friction, (&report, &solution));
             }
-            // One more: the certificate is not in the known ones, which are rounded.
+            // One product more: the known numbers are rounded, without the certificate.
             let most = 1.1 * (f64::from(tight[1]) + 0.5) + 1.0;
             assert!(report.products <= most, "{b} {}: {}", case.name, report.products);
             products.push(report.products - 1.0);
@@ -158,9 +158,9 @@ fn steps_of_transient_rolling_lead_to_steady_rolling() {
     for _ in 0..200 {
         (_, last) = run(&mut stepping, &g, &Friction { previous: Previous::Kept, ..step }, 1e-9);
     }
-    // What is left of the start falls by 5 in 20 steps, from .4 after the first 20; both residuals are below.
+    // The effect of the start is .4 after 20 steps, and falls by a factor of 5 in 20 further ones. Both residuals are below.
     assert!(apart(&last, &expected) <= 1e-6, "{}", apart(&last, &expected));
-    // The last tractions are a start, and no part of the problem.
+    // For steady rolling the last tractions are only a start.
     let (warm_report, warm) = run(&mut stepping, &g, &Friction { previous: Previous::Kept, ..steady }, 1e-8);
     assert!(apart(&warm, &expected) <= 1e-6, "{}", apart(&warm, &expected));
     assert!(warm_report.products <= 12.0, "{}", warm_report.products);
@@ -188,7 +188,7 @@ fn unlike_cylinders_roll_as_contact_says() {
         let (_, stop, report) = solve(&scene, &Options::default()).unwrap();
         let found = report.friction.unwrap();
         assert_eq!(stop, Outcome::Converged);
-        // The digits printed.
+        // The printed digits.
         assert!((found.creepage[0] - creepage).abs() <= 5e-8, "{mu} {part}: {:?}", found.creepage);
         assert_eq!((found.certificate.stick_count, report.measures.contact_count), (sticks, in_contact), "{mu} {part}");
         assert!((found.force[0] - part * mu * 16201.9).abs() <= 1e-6 * mu * 16201.9);

@@ -1,7 +1,8 @@
-//! Why single last digits of CONTACT's forces differ: the rule by which it stops, in a loop of solves of this library.
+//! Why single last digits of CONTACT's forces differ: its stopping rule, in a loop of solves of this library.
 //!
-//! CONTACT solves Coulomb's problem with the coefficients of the last slip velocities, from 0 (INISLP = 1) or from the speed (-1) on, until these change by less
-//! than a thousandth (rms over C). Where a coefficient rises a tenth of the change is taken back (OMGSLP = 1.1), and less where elements change sides for long.
+//! CONTACT solves Coulomb's problem with the coefficients of the last slip velocities, beginning with 0 (INISLP = 1) or the speed (-1), until they
+//! change by less than a thousandth (rms over C). A rising coefficient is reduced by a tenth of its change (OMGSLP = 1.1), and by less if elements
+//! change between stick and slip for long.
 
 use contact_normal::friction::{Request, Solution, SLIP, STICK};
 use contact_normal::scene::{Branch, Coefficient, Friction, FrictionLaw, Motion, Prescribed, Previous};
@@ -10,7 +11,7 @@ use contact_normal::solver::Outcome;
 use super::branches::{part, Cylinder, FALLS, PRINTED, ROLLING, STEP};
 use super::laws::{solver, Wheel, FORCE, RUNNING};
 
-/// The rule.
+/// The parameters of the rule.
 const CHANGES: f64 = 1e-3;
 const RELAXATION: f64 = 1.1;
 const LESS: f64 = 0.8;
@@ -22,14 +23,15 @@ const TURNS: [usize; 50] = [
     16, 6, 9, 12, 17, 30, 13, 6, 9, 12, 17, 27, 23, 6, 9, 13, 19, 43, 13,
 ];
 
-/// What the loop ends with: tractions, coefficients, and the outer iterations.
+/// The result of the loop: tractions, coefficients, and the number of outer iterations.
 struct Ended {
     solution: Solution,
     mu: Vec<f64>,
     turns: usize,
 }
 
-/// `coefficients` of slip velocities v, and those before these that they are compared with; `solve` with coefficients; `duration` of a step.
+/// `coefficients`: those of slip velocities v, and those of the particles before; `solve`: the tractions for coefficients; `duration`: that of a
+/// step.
 fn in_turns(
     (mut v, duration): (Vec<f64>, f64),
     coefficients: impl Fn(&[f64]) -> (Vec<f64>, Vec<f64>),
@@ -57,12 +59,13 @@ fn in_turns(
     unreachable!("a loop that ends")
 }
 
-/// A row of elements: those upstream, fresh at the leading edge.
+/// The coefficients of the elements upstream in a row, `fresh` at the leading edge.
 fn upstream(mu: &[f64], fresh: f64) -> Vec<f64> {
     (0..mu.len()).map(|i| mu.get(i + 1).copied().unwrap_or(fresh)).collect()
 }
 
-/// The sawtooth of stick and slip by the rule: it takes as many turns as CONTACT printed, and leaves forces off by as much as the printed ones differ.
+/// The sawtooth of stick and slip by the rule: most steps take as many turns as CONTACT printed, and the errors of forces are those of the printed
+/// ones.
 #[test]
 fn the_rule_moves_forces_by_what_differs() {
     let cylinder = Cylinder::new();
@@ -111,14 +114,15 @@ fn the_rule_moves_forces_by_what_differs() {
     println!(
         "by the rule {most:.1e}, beyond the digits {beyond:.1e}, turns as printed {as_printed}, digits {with_more}"
     );
-    // Steps in which two elements slip take two turns more.
+    // Steps in which two elements slip take two more turns.
     assert!(as_printed >= 40, "{as_printed} of 50");
     assert!(beyond <= most, "{beyond:e} {most:e}");
-    // All of these are off by the same 1.5e-5: what CONTACT's pressures, or the first state, leave.
+    // The forces have a common difference of 1.5e-5, by CONTACT's pressures or by the first state.
     assert!(with_more >= 49, "{with_more} of 50");
 }
 
-/// A wheel at a creepage of .05, all of which slips: the force is 2e-6 from the digit printed, and the rule leaves 3e-5, from below and from above.
+/// A wheel in full slip at a creepage of .05: the force is within 2e-6 of the printed digit, and the rule has errors of 3e-5, from below and from
+/// above.
 #[test]
 fn the_rule_leaves_more_than_a_wheels_digit() {
     let wheel = Wheel::new(1);

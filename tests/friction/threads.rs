@@ -1,11 +1,11 @@
-//! Any number of threads finds the same bits: each motion, with and without coupling, creepages and forces, derivatives.
+//! Results have the same bits with any number of threads: each motion, with and without coupling, creepages and forces, derivatives.
 
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 use super::support::ball;
 
-/// So many elements that each pass is shared between threads.
+/// With this many elements each pass is shared between threads.
 const M: usize = 160;
 
 fn check(name: &str, nu: [f64; 2], friction: Friction<'_>) {

@@ -1,4 +1,4 @@
-//! Unlike bodies: coupling coefficients against quadrature, both problems' conditions by direct sums, Spence's indentation.
+//! Unlike bodies: coupling coefficients compared with quadrature, the conditions of both problems by direct sums, Spence's indentation.
 
 use std::f64::consts::PI;
 
@@ -11,12 +11,12 @@ use contact_normal::solver::{solve, Options, Outcome, Solver};
 use super::case::{distance, grid};
 use super::coefficients::{panels, rule};
 
-/// The integrals of `x/r^2` and `y/r^2` over an element: in y by the rule on panels that are graded towards the singular point, in x in
-/// closed form, `[ln(x^2 + y^2)]/2` and `[atan(x/y)]`.
+/// The integrals of `x/r^2` and `y/r^2` over an element: in y by the rule on panels that are graded towards the singular point, in x in closed form,
+/// `[ln(x^2 + y^2)]/2` and `[atan(x/y)]`.
 fn by_quadrature(kx: f64, ky: f64, dx: f64, dy: f64) -> [f64; 2] {
     let (xp, xm) = ((kx + 0.5) * dx, (kx - 0.5) * dx);
     let panels = panels((ky - 0.5) * dy, (ky + 0.5) * dy);
-    // Far away the ends are rounded to more than the width is.
+    // Far away the rounding of the ends exceeds that of the width.
     let width: f64 = dy / panels.iter().map(|(from, to)| to - from).sum::<f64>();
     let mut sum = [0.0; 2];
     for (from, to) in panels {
@@ -37,7 +37,7 @@ fn coupling_coefficients_are_those_of_quadrature() {
     for aspect in [1e-3, 0.02, 0.3, 0.5, 1.0, 1.7, 40.0, 1e3] {
         for (&kx, &ky) in near.iter().flat_map(|kx| near.iter().map(move |ky| (kx, ky))) {
             let found = cross::integrals(kx, ky, aspect, 1.0);
-            // Far along x the closed form in x loses digits: turned around the integral in x is the smooth one.
+            // Far along x the closed form in x loses digits: with x and y exchanged the smooth direction is integrated by the rule.
             let exact = if kx * aspect > ky {
                 let [y, x] = by_quadrature(ky, kx, 1.0, aspect);
                 [x, y]
@@ -50,7 +50,7 @@ fn coupling_coefficients_are_those_of_quadrature() {
                 continue;
             }
             let error = (found[0] - exact[0]).hypot(found[1] - exact[1]) / exact[0].hypot(exact[1]);
-            // That of the other coefficients: of |J|, to the rounding of the quadrature's own closed form.
+            // The tolerance of the other coefficients, for the rounding of the closed form in the quadrature.
             assert!(error <= 1e-12, "{aspect} ({kx}, {ky}): {found:?} {exact:?} {error}");
         }
     }
@@ -125,7 +125,7 @@ fn both_problems_of_unlike_bodies_meet_their_conditions() {
                     let friction = Friction { prescribed, ..Friction::new(mu) };
                     let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, load) };
                     let [normal, tangential] = left(&sums, &scene, tolerance);
-                    // The sums round otherwise than the transforms.
+                    // Sums and transforms have different round-off.
                     assert!(
                         normal.max(tangential) <= 1.001,
                         "{bodies:?} {mu} {tolerance:e} {load:?}: {normal} {tangential}"
@@ -136,7 +136,7 @@ fn both_problems_of_unlike_bodies_meet_their_conditions() {
     }
 }
 
-/// What a solution leaves of the conditions of both problems, relative to the tolerance.
+/// The residuals of both problems.
 fn left(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> [f64; 2] {
     let (friction, h) = (scene.friction.as_ref().unwrap(), scene.undeformed_distance);
     let (solver, stop, report) = solve(scene, &Options { tolerance, ..Options::default() }).unwrap();
@@ -150,7 +150,7 @@ fn left(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> [f64; 2] {
     let (mut penetration, mut deepest) = (0.0_f64, 0.0_f64);
     for (i, h) in h.iter().enumerate() {
         let [by_q, by_p] = sums.displacements(i, &solution.traction, &state.p);
-        // What the tractions displace is part of the distance.
+        // The displacement by tractions is a part of the distance.
         let d = h - state.approach + by_q[2];
         let e = d + by_p[2];
         assert!((state.deformed_distance(i) - e).abs() <= 1e-12, "{i}: {} {e}", state.deformed_distance(i));
@@ -178,7 +178,7 @@ fn left(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> [f64; 2] {
     let found = [(residual / distance).sqrt(), (slips / f64::max(rigid, moved)).sqrt()];
     let reported = [report.measures.certificate.residual, report.friction.unwrap().certificate.residual];
     for (found, reported) in found.iter().zip(reported) {
-        // What is reported is what the solution leaves: round-off is 1e-12 of what is compared.
+        // The reported residual is that of the solution; the round-off of both is 1e-12.
         assert!((found - reported).abs() <= 1e-10, "{found:e} {reported:e}");
     }
     found.map(|found| found / tolerance)
@@ -193,21 +193,21 @@ fn reported_bytes_hold_what_couples_unlike_bodies() {
         let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Approach(0.05)) };
         solve(&scene, &Options::default()).unwrap().2.bytes
     };
-    // Of each element: sideways displacements (two numbers), those along the normal, the distance with them, pressures before, two
-    // fields of a product; the transforms of two odd kernels, of which a quarter of the waves of twice the sides are known.
+    // For each element: tangential displacements (two numbers), those along the normal, the distance with them, previous pressures, two fields of a
+    // product; and the transforms of two odd kernels, a quarter of the waves of twice the sides.
     let least = (24 * 24 * (7 + 2)) as u64 * 8;
     assert!(bytes(0.2) >= bytes(0.3) + least, "{} {} {least}", bytes(0.2), bytes(0.3));
 }
 
 #[test]
 fn an_indentation_with_friction_is_similar_at_all_loads() {
-    // Spence 1968, 1975: while the load grows, the stick area keeps its part of the contact area. A rigid ball on a soft half-space.
+    // Spence 1968, 1975: while the load grows, the stick area is a constant part of the contact area. A rigid ball on a soft half-space.
     let parts = stick_areas(RIGID_ON_SOFT);
     for part in &parts[15..] {
-        // CONTACT's spence35, a ball on 35 stages: 225 of 921 elements stick. Half an element of 0.25 on a radius of 3.2 to 4.8.
+        // CONTACT's spence35, a ball in 35 steps: 225 of 921 elements stick. Half an element of 0.25, on a radius of 3.2 to 4.8.
         assert!((part - (225.0_f64 / 921.0).sqrt()).abs() <= 0.04, "{parts:?}");
     }
-    // Where nu = 0.3 pressures push less sideways: more sticks, the same part at all loads.
+    // With nu = 0.3 pressures cause smaller tangential displacements: the stick area is larger, and again a constant part.
     let stiffer = stick_areas(Bodies { poisson_ratio: [0.3, 0.0], ..RIGID_ON_SOFT });
     let last = stiffer[23];
     for (part, with_nu_0) in stiffer[15..].iter().zip(&parts[15..]) {
@@ -263,7 +263,7 @@ fn contacts_spence35_is_met() {
         assert_eq!(stop, Outcome::Converged, "{stage}");
         let certificate = report.friction.unwrap().certificate;
         let found = (report.measures.contact_count, certificate.stick_count, certificate.slip_count);
-        // The counts that CONTACT prints.
+        // The printed counts of CONTACT.
         for (printed, counts) in [(6, (29, 5, 24)), (18, (241, 61, 180)), (35, (921, 225, 696))] {
             if stage == printed {
                 assert_eq!(found, counts, "{stage}");
@@ -271,7 +271,7 @@ fn contacts_spence35_is_met() {
             }
         }
         if stage == 35 {
-            // Half of the last digit printed.
+            // Half of the last printed digit.
             assert!((report.measures.max_pressure - 0.02392).abs() <= 5e-6, "{}", report.measures.max_pressure);
         }
     }

@@ -1,13 +1,13 @@
-//! Unlike bodies where all or part of the contact is at its pressure limit, or is one element: the normal conditions with what the tractions
-//! displace, by direct sums.
+//! Unlike bodies with all or part of the contact at its pressure limit, or with a contact of one element: the normal conditions with the
+//! displacements by the tractions, by direct sums.
 
 use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 use super::unlike::{ball, Sums, RIGID_ON_SOFT};
 
-/// The smallest tolerance that the normal conditions of a solution hold to: of the rms of `h - approach` where bodies touch. Also how many elements
-/// are at their limit and how many touch.
+/// The smallest tolerance for which the normal conditions of a solution hold, relative to the rms of `h - approach` in contact; the number of
+/// elements at their limit, and that in contact.
 fn left(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> (f64, usize, usize) {
     let (solver, stop, report) = solve(scene, &Options { tolerance, ..Options::default() }).unwrap();
     assert_eq!(stop, Outcome::Converged, "{:?}", scene.load);
@@ -58,7 +58,7 @@ fn elements_at_their_limit_are_moved_by_tractions() {
                     let plain = Scene::new(grid, &h, bodies, load);
                     let scene = Scene { friction: Some(friction), pressure_limit, ..plain };
                     let (left, limited, touching) = left(&sums, &scene, 1e-6);
-                    // The sums round otherwise than the transforms.
+                    // Sums and transforms have different round-off.
                     assert!(left <= 1.001e-6, "{bodies:?} {motion:?} {limit} {load:?}: {left:e}");
                     full += usize::from(limited == touching);
                 }
@@ -68,7 +68,7 @@ fn elements_at_their_limit_are_moved_by_tractions() {
     assert!(full >= 18, "{full} scenes at their limit everywhere");
 }
 
-/// One element in contact displaces its neighbours along the normal, but not itself: they may come into contact by it.
+/// The traction of the only element in contact displaces its neighbours along the normal, but not itself, so that they may come into contact.
 #[test]
 fn neighbours_of_a_single_element_are_moved_by_its_traction() {
     let (grid, mut h) = ball(5);

@@ -1,4 +1,4 @@
-//! Unlike bodies by forces: tractions change the pressures, and with them the greatest force.
+//! Unlike bodies with given forces: tractions change the pressures, and so the greatest force.
 
 use contact_normal::effects::Coefficient;
 use contact_normal::error::Error;
@@ -15,8 +15,8 @@ fn ball() -> (Grid, Vec<f64>) {
     (grid, distance(&grid, |x, y| (x * x + y * y) / 50.0))
 }
 
-/// Creepages that are given bracket the answer, so the force that each of them gives is no force that cannot be: it gives the creepage back. The
-/// pressures without tractions carry less than most of these forces, where the coefficient of friction varies, or the approach is given.
+/// The force of a given creepage must be possible, and must give the creepage back. The pressures without tractions carry less than most of these
+/// forces, if the coefficient of friction varies, or if the approach is given.
 #[test]
 fn forces_beyond_what_the_first_pressures_carry_are_found() {
     let (grid, h) = ball();
@@ -41,7 +41,7 @@ fn forces_beyond_what_the_first_pressures_carry_are_found() {
                     (force, carried)
                 };
                 let (force, carried) = of(&given(Prescribed::Creepage(creepage)));
-                // All slips: any larger creepage gives this force, too.
+                // In full slip any larger creepage gives this force as well.
                 if force.abs() > (1.0 - 1e-6) * carried {
                     continue;
                 }
@@ -56,7 +56,7 @@ fn forces_beyond_what_the_first_pressures_carry_are_found() {
     assert!(beyond > 5, "{beyond} beyond what the first pressures carry");
 }
 
-/// More than the pressures of full slip carry, which a large creepage shows, is refused by these pressures; the handle keeps its last result.
+/// A force beyond that of the pressures in full slip, which a large creepage shows, is refused. The handle keeps its last result.
 #[test]
 fn forces_beyond_full_slip_are_refused() {
     let (grid, h) = ball();
@@ -75,7 +75,7 @@ fn forces_beyond_full_slip_are_refused() {
         let refused = solver.solve(&with(Prescribed::Force(1.001 * most)), &options, None, None);
         let Err(Error::Infeasible(message)) = refused else { panic!("{refused:?}") };
         let least: f64 = message.rsplit(' ').next().unwrap().parse().unwrap();
-        // Creepages before full slip carry a little more, 4.5e-4 by approach.
+        // Creepages just below full slip carry a little more, 4.5e-4 with a given approach.
         let part = least / most.abs();
         assert!((1.0 - 1e-4..1.001).contains(&part), "{message}: {most}");
         assert!(solver.friction().unwrap().traction == traction, "the last result");
@@ -84,8 +84,7 @@ fn forces_beyond_full_slip_are_refused() {
     }
 }
 
-/// A tolerance below round-off is not met; the result is the best that was found, not what products in single precision took for it. Scenes of which
-/// ten in forty ended at 3e-8.
+/// A tolerance below round-off is not met. The result is the best iterate by its residual in double precision, not by that in single precision.
 #[test]
 fn below_round_off_the_best_is_returned() {
     for (m, mu) in [(35, 1.3e-4), (34, 1.5e-2), (22, 8.9e-3), (16, 1.4e-4), (29, 3.2e-3)] {
@@ -98,7 +97,7 @@ fn below_round_off_the_best_is_returned() {
                 for tolerance in [1e-15, 1e-16, 1e-17] {
                     let (_, _, report) = solve(&scene, &Options { tolerance, ..Options::default() }).unwrap();
                     let found = report.friction.unwrap().certificate;
-                    // Sums of some hundred products, each of which rounds by 1e-16.
+                    // Sums of some hundred terms, each with a rounding error of 1e-16.
                     assert!(found.residual <= 1e-14, "{m} {mu} {shift} {tolerance} {bodies:?}: {}", found.residual);
                 }
             }
@@ -106,8 +105,8 @@ fn below_round_off_the_best_is_returned() {
     }
 }
 
-/// A flat soft punch on a rigid body: before all slips it carries up to 1 % more than in full slip. What a creepage carries is no force that cannot be. Close
-/// to the largest force a search takes some 2000 products.
+/// A flat soft punch on a rigid body carries up to 1 % more force just before full slip than in full slip. The force of any creepage must be
+/// possible. Close to the largest force a search takes some 2000 products.
 #[test]
 fn forces_between_full_slip_and_the_largest_are_found() {
     for (m, mu, motion) in [((11, 5), 1.0, Motion::SteadyRolling), ((11, 25), 2.0, Motion::Shift)] {
@@ -128,7 +127,7 @@ fn forces_between_full_slip_and_the_largest_are_found() {
             let found = force(Prescribed::Force(wanted)).unwrap_or_else(|error| panic!("{m:?} {part}: {error}"));
             assert!((found / wanted - 1.0).abs() <= 1e-6, "{m:?} {part}: {found} {wanted}");
         }
-        // Between two of thirty creepages there may be some thousandths more. The search ends where the force is out of reach.
+        // Between two of the thirty creepages the force may be some thousandths larger. A search for a force out of reach ends.
         let Err(Error::Infeasible(message)) = force(Prescribed::Force(1.01 * largest)) else { panic!("{m:?}") };
         let most: f64 = message.rsplit(' ').next().unwrap().parse().unwrap();
         assert!((0.997..1.005).contains(&(most / largest)), "{message}: {largest}");

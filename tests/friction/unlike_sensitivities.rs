@@ -1,4 +1,4 @@
-//! Derivatives of the forces of unlike bodies against central differences of whole solves: pressures follow the tractions.
+//! Derivatives of the forces of unlike bodies compared with central differences of whole solves, in which the tractions change the pressures.
 
 use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Previous, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
@@ -6,14 +6,14 @@ use contact_normal::solver::{solve, Options, Outcome};
 use super::case::paraboloid;
 use super::unlike::RIGID_ON_SOFT;
 
-/// Half the step of a difference, in parts of a motion that all slips by: hardly an element changes sides.
+/// Half the step of a difference, relative to a motion of full slip: hardly any element changes between stick and slip.
 const STEP: f64 = 1e-5;
 
 fn at(scene: &Scene<'_>, creepage: [f64; 2], spin: f64, sensitivities: bool) -> ([f64; 3], Option<[[f64; 3]; 3]>) {
     let prescribed = creepage.map(Prescribed::Creepage);
     let friction = Friction { prescribed, spin, sensitivities, ..scene.friction.unwrap() };
     let scene = Scene { friction: Some(friction), ..scene.clone() };
-    // Differences of 1e-5 of the forces to 1e-5 of them: a residual of 1e-11 leaves less.
+    // Differences are 1e-5 of the forces, and need an accuracy of 1e-5: a residual of 1e-11 has a smaller error.
     let (_, stop, report) = solve(&scene, &Options { tolerance: 1e-11, ..Options::default() }).unwrap();
     assert_eq!(stop, Outcome::Converged);
     let found = report.friction.unwrap();
@@ -66,11 +66,11 @@ fn derivatives_are_those_of_whole_solves() {
                     pressure_limit: limit.map(|limit| PressureLimit(Each::Uniform(limit))),
                     ..Scene::new(grid, &h, bodies, load)
                 };
-                // From little slip to nothing but slip.
+                // From little slip to full slip.
                 let size = if motion == Motion::Shift { 0.1 * mu } else { 0.05 * mu };
                 for part in [0.15, 0.5, 1.5] {
                     let off = off(&scene, [-part * size, 0.4 * part * size], 0.02 * part * size, (size, 3.0));
-                    // The linear solves leave 1e-5; with pressures that are held it is .05 to .5.
+                    // The error of the linear solves is 1e-5. With fixed pressures the derivatives would differ by .05 to .5.
                     assert!(off <= 3e-5, "{bodies:?} {motion:?} {load:?} {limit:?} {part}: {off:e}");
                 }
             }
@@ -78,7 +78,7 @@ fn derivatives_are_those_of_whole_solves() {
     }
 }
 
-/// Where nothing slips or nothing is carried, there is nothing to divide by.
+/// Without slip, or without any force, nothing is divided by 0.
 #[test]
 fn the_ends_of_the_way() {
     let m = 12;

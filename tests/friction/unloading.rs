@@ -1,4 +1,4 @@
-//! Steps without a rigid slip in the contact: tractions of before relax, and slips beside the contact do not count.
+//! Steps without a rigid slip in the contact: previous tractions are released, and rigid slips outside the contact have no effect.
 
 use contact_normal::friction::{Compliance, Tangential, Vector};
 use contact_normal::grid::Grid;
@@ -17,7 +17,7 @@ fn solved(scene: &Scene<'_>, what: &str) -> (Solver, f64) {
     (solver, report.friction.expect("friction").certificate.gap)
 }
 
-/// The displacements by tractions at places `by` elements from each, by direct sums.
+/// The displacements by tractions at places `by` elements from each centre, by direct sums.
 fn displaced(grid: &Grid, by: f64, q: &[Vector]) -> Vec<Vector> {
     let tangential = Tangential::new(grid.dx, grid.dy, Compliance { shear: 1.0, poisson: 0.3, unlike: 0.0 });
     let mut u = vec![[0.0; 2]; q.len()];
@@ -25,14 +25,14 @@ fn displaced(grid: &Grid, by: f64, q: &[Vector]) -> Vec<Vector> {
     u
 }
 
-/// Tractions in `[k][element]` that are `size` times the bounds of one element under a unit pressure, in all directions.
+/// Tractions in `[k][element]`, `size` times the bound of one element under a unit pressure, in all directions.
 fn tractions(n: usize, size: f64) -> [Vec<f64>; 2] {
     let of = |i: usize, k: usize| size * ((i * 7919 + 104_729 * k) as f64).sin();
     [0, 1].map(|k| (0..n).map(|i| of(i, k)).collect())
 }
 
-/// The larger tractions of before are, the more round-off has their displacement, and so has the slip: with 1e3 times the bounds and more, steps
-/// of rolling without creepage stagnated at residuals up to 2e7.
+/// Larger previous tractions cause larger round-off of their displacements, and so of the slip. Steps of rolling without creepage must converge all
+/// the same.
 #[test]
 fn tractions_relax_however_large_they_were() {
     let (grid, h) = ball(9, 1.0);
@@ -71,7 +71,7 @@ fn tractions_relax_however_large_they_were() {
     assert_eq!(count, 10);
 }
 
-/// Only the slip in the contact is a motion: with one beside it, this was refused as a slip of 1e-60 times the displacements.
+/// Only a rigid slip in the contact is a motion: one outside must not be refused as a slip of 1e-60 times the displacements.
 #[test]
 fn a_slip_beside_the_contact_is_no_motion() {
     let m = 9;
@@ -92,7 +92,7 @@ fn a_slip_beside_the_contact_is_no_motion() {
     }
 }
 
-/// A force of 0 beside a spin: the creepages that are found cancel the slip of the one element.
+/// A force of 0 with a spin: the creepages cancel the slip of the only element.
 #[test]
 fn a_gap_without_work_is_a_number() {
     let grid = Grid::new(1, 1, 1.0, 1.0).unwrap();

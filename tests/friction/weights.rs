@@ -1,5 +1,5 @@
-//! Weights of creepages: surfaces that are inclined within the contact area. A creepage moves an element by its weight, and the force that
-//! goes with it is the sum of weights times tractions.
+//! Weights of creepages: surfaces that are inclined within the contact area. A creepage moves an element by its weight, and the force of the
+//! direction is the sum of weights times tractions.
 
 use contact_normal::error::Error;
 use contact_normal::friction::Request;
@@ -48,7 +48,7 @@ fn forces_are_sums_of_weighted_tractions() {
                 if motion == Motion::SteadyRolling {
                     continue;
                 }
-                // A step on from there, by less.
+                // The next step, with less force.
                 let prescribed = force.map(|force| Prescribed::Force(0.7 * force));
                 let next = Friction { previous: Previous::Kept, prescribed, ..friction };
                 let (report, after) = run(&mut solver, &case.bound, &next, 1e-6);
@@ -66,7 +66,7 @@ fn creepages_that_are_given_are_weighted_too() {
     let views = weights.each_ref().map(|weights| &weights[..]);
     let prescribed = [Prescribed::Creepage(-0.2), Prescribed::Creepage(0.3)];
     let weighted = Friction { prescribed, weights: Some(views), ..case.friction };
-    // The same as a rigid slip of one's own.
+    // The result equals that of the caller's own rigid slip.
     let slips = [0, 1].map(|k| weights[k].iter().map(|weight| weight * [-0.2, 0.3][k]).collect::<Vec<f64>>());
     let own = Some(slips.each_ref().map(|slip| &slip[..]));
     let rigid = Friction { prescribed: [Prescribed::Creepage(0.0); 2], rigid_slip: own, ..case.friction };
@@ -105,13 +105,13 @@ fn forces_that_weights_cannot_carry_are_refused() {
     };
     assert!(matches!(solved(0.1 * most, 0.1 * most), Err(Error::Infeasible(_))));
     assert!(matches!(solved(0.0, 0.6 * most), Err(Error::Infeasible(_))));
-    // Where no creepage moves anything a force of 0 takes none, but for round-off.
+    // With weights of 0 a force of 0 needs no creepage, up to round-off.
     let (end, creepage) = solved(0.0, 0.3 * most).unwrap();
     assert!(end == Outcome::Converged && creepage[0].abs() < 1e-15 && creepage[1] < -0.1, "{end:?} {creepage:?}");
 }
 
-/// The greatest part of a force that elements carry, by tractions that go with 20000 directions of creepages: each of them carries a point of
-/// the border of what can be carried.
+/// The greatest multiple of a force that elements carry, by the tractions of 20000 directions of creepages: each gives a half-plane that contains all
+/// forces that can be carried.
 fn reach(force: [f64; 2], bound: &[f64], weights: &[Vec<f64>; 2], area: f64) -> f64 {
     let part = |k: usize| {
         let angle = std::f64::consts::TAU * k as f64 / 20000.0;
@@ -166,7 +166,7 @@ fn what_can_be_carried_is_solved_and_what_cannot_be_is_refused() {
     }
 }
 
-/// Where weights leave nothing of one force, the force in the other direction is met, 0 as well as another one.
+/// If the weights of one direction are 0, a force of 0 in the other direction is met.
 #[test]
 fn a_force_of_zero_is_met_beside_one_without_weights() {
     let case = Ellipse::random(3, 20, false);
@@ -180,7 +180,7 @@ fn a_force_of_zero_is_met_beside_one_without_weights() {
                 prescribed[k] = Prescribed::Force(force);
                 let mut weights = [&zeros[..]; 2];
                 weights[k] = &ones;
-                // Spin about a place beside the contact makes a force unless a creepage makes up for it.
+                // Spin about a place off the centre causes a force, unless a creepage balances it.
                 let friction = Friction {
                     motion,
                     prescribed,

@@ -36,7 +36,7 @@ fn origin(grid: &Grid) -> [f64; 2] {
     [3.55 - 0.5 * grid.mx as f64 * grid.dx, 6.15 - 0.5 * grid.my as f64 * grid.dy]
 }
 
-/// The shift s of the data.
+/// The shift of the data.
 pub fn shift(grid: &Grid) -> Friction<'static> {
     Friction {
         prescribed: [Prescribed::Creepage(0.0005), Prescribed::Creepage(-0.0010)],
@@ -46,7 +46,7 @@ pub fn shift(grid: &Grid) -> Friction<'static> {
     }
 }
 
-/// Steady rolling, c of the data: creepages given.
+/// Steady rolling with given creepages, c of the data.
 pub fn rolling(grid: &Grid) -> Friction<'static> {
     Friction {
         motion: Motion::SteadyRolling,
@@ -57,7 +57,7 @@ pub fn rolling(grid: &Grid) -> Friction<'static> {
     }
 }
 
-/// Steady rolling, f of the data: the forces given, `carried` being mu N.
+/// Steady rolling with given forces, f of the data; `carried` is mu N.
 pub fn rolling_with_forces(grid: &Grid, carried: f64) -> Friction<'static> {
     let prescribed = [-0.573, -0.327].map(|part| Prescribed::Force(part * carried));
     Friction { prescribed, ..rolling(grid) }

@@ -1,4 +1,4 @@
-//! After a lack of memory at any allocation of a solve with adhesion the next solve of the same solver is that of a new one: on small grids, and on large
+//! After any allocation in a solve with adhesion has failed, the next solve on the same solver equals that of a new one: on small grids, and on large
 //! ones, which keep fewer vectors.
 
 use contact_normal::adhesion::Law;
@@ -13,7 +13,8 @@ use super::spheres::Sphere;
 /// A sphere of radius 1 on a square of this half-width.
 const HALF_WIDTH: f64 = 3.0;
 
-/// Bytes of an allocation that counts, or one an element if that is more: what has the same size on any grid is less.
+/// The least size of an allocation that counts, or one byte per element if that is more. Allocations whose size does not depend on the grid are
+/// smaller.
 const LARGE: usize = 33_000;
 
 /// A sphere on m x m elements. Tabor's parameter is 1.2.
@@ -23,14 +24,14 @@ fn sphere(m: usize) -> Sphere {
     Sphere { adhesion, ..of }
 }
 
-/// The pressures of a solve.
+/// Solves; returns the pressures.
 fn solve(solver: &mut Solver, scene: &Scene<'_>, options: &Options) -> Result<Vec<f64>, Error> {
     let (outcome, _) = solver.solve(scene, options, None, None)?;
     assert_eq!(outcome, Outcome::Converged);
     Ok(solver.state().p.clone())
 }
 
-/// One failure after the other until a solve has all that it needs; of many every so many only.
+/// Lets one allocation after the other fail until a solve succeeds; if there are many, only some of them.
 fn fails_everywhere(m: usize, load: Load, all: usize) {
     let (sphere, options) = (sphere(m), Options { threads: 1, ..Options::default() });
     let scene = sphere.scene(load);

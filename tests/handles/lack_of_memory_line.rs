@@ -1,4 +1,4 @@
-//! Friction on long lines, whose rows or columns are as large as the grid: whatever memory lacks, plans of transforms included, is a status.
+//! Friction on long lines, whose rows or columns are as large as the grid: any lack of memory, also in plans of transforms, is a status.
 
 use std::ptr::{null, null_mut};
 
@@ -7,17 +7,17 @@ use super::call::initialised;
 use super::limited_memory::{self, release};
 use contact_normal::ffi::*;
 
-/// Elements of a line.
+/// The number of elements of a line.
 const N: usize = 3200;
-/// Bytes of allocations that count: three quarters of a number an element. The lists of coarser grids are smaller.
+/// The least size of an allocation that counts: three quarters of a number per element. The arrays of coarser grids are smaller.
 const LARGE: usize = 8 * N * 3 / 4;
 
-/// Elastic cylinders, along x or along y; the tangential problem with pressures that are given, or both problems.
+/// Solves elastic cylinders along x or along y: the tangential problem with given pressures, or both problems.
 fn solve(sides: (usize, usize), modulus: f64, motion: i32, pressures: Option<&[f64]>) -> i32 {
     solve_by(CONTACT_NORMAL_METHOD_AUTO, sides, modulus, motion, pressures)
 }
 
-/// And without friction by the other methods.
+/// [`solve`] by any method.
 fn solve_by(method: i32, (mx, my): (usize, usize), modulus: f64, motion: i32, pressures: Option<&[f64]>) -> i32 {
     let mut scene = initialised(contact_normal_scene_init);
     let mut friction = initialised(contact_normal_friction_init);
@@ -43,10 +43,10 @@ fn solve_by(method: i32, (mx, my): (usize, usize), modulus: f64, motion: i32, pr
     }
 }
 
-/// Solves with more and more memory, each time on a thread of its own, which has no plans yet. Returns how often it lacked.
+/// Solves with more and more memory, each time on a new thread, which has no plans. Returns the number of failures.
 fn with_more_and_more(what: &str, run: impl Fn() -> i32 + Sync) -> usize {
     let mut lacks = 0;
-    // So near that the largest array, of some 100 numbers an element, comes in many steps.
+    // The steps are small relative to the largest array, of some 100 numbers per element.
     let mut room = 16 * N;
     loop {
         release();
@@ -79,7 +79,7 @@ fn friction_on_a_line_without_memory_is_refused() {
     }
 }
 
-/// The normal problem of the same lines, and both in turns.
+/// The normal problem of the same lines, and both problems in turns.
 #[test]
 fn a_line_that_rolls_without_memory_is_refused() {
     let _alone = alone();

@@ -1,4 +1,4 @@
-//! The system's memory, of which a thread gets no more than it is allowed.
+//! The system's allocator with a limit for each thread.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -9,13 +9,13 @@ use contact_normal::ffi::{contact_normal_release, CONTACT_NORMAL_OK, CONTACT_NOR
 struct Limited;
 
 thread_local! {
-    /// Bytes of an allocation that counts.
+    /// The least number of bytes of an allocation that counts.
     static LARGE: Cell<usize> = const { Cell::new(usize::MAX) };
-    /// Of those, how many succeed.
+    /// The number of those allocations that succeed.
     static ALLOWED: Cell<u64> = const { Cell::new(u64::MAX) };
-    /// Bytes that may be held where another one that counts is asked for.
+    /// The bytes that may be held after an allocation that counts.
     static ROOM: Cell<i64> = const { Cell::new(i64::MAX) };
-    /// Bytes held.
+    /// The bytes held.
     static HELD: Cell<i64> = const { Cell::new(0) };
 }
 
@@ -68,7 +68,7 @@ unsafe impl GlobalAlloc for Limited {
 #[global_allocator]
 static LIMITED: Limited = Limited;
 
-/// Calls `run` with so many allocations of `large` bytes or more; all after them fail.
+/// Calls `run` with `allowed` successful allocations of `large` bytes or more; all later ones fail.
 pub fn with<R>(large: usize, allowed: u64, run: impl FnOnce() -> R) -> R {
     ALLOWED.set(allowed);
     LARGE.set(large);
@@ -78,12 +78,13 @@ pub fn with<R>(large: usize, allowed: u64, run: impl FnOnce() -> R) -> R {
     result
 }
 
-/// Returns the memory that earlier solves left, which calls would use in place of allocations.
+/// Frees the memory that earlier solves kept, which calls would use instead of allocations.
 pub fn release() {
     contact_normal_release();
 }
 
-/// Attempts a call with 0, 1, 2, ... large allocations until it has enough; beyond 24 of every so many only. Returns how many it takes; a lack is a status.
+/// Attempts a call with 0, 1, 2, ... allowed large allocations until it succeeds; beyond 24 in growing steps. Returns the number allowed. Each
+/// failure must be OUT_OF_MEMORY.
 pub fn until_enough(what: &str, mut attempt: impl FnMut(u64) -> i32) -> u64 {
     let mut allowed = 0;
     loop {
@@ -98,8 +99,8 @@ pub fn until_enough(what: &str, mut attempt: impl FnMut(u64) -> i32) -> u64 {
     }
 }
 
-/// Calls `run` with room for so many bytes more: allocations of `large` bytes or more beyond it fail.
-#[allow(dead_code)] // tests/handles asks; tests/memory.rs does not.
+/// Calls `run` with room for `bytes` more bytes: allocations of `large` bytes or more beyond it fail.
+#[allow(dead_code)] // Only tests/handles uses it.
 pub fn within<R>(large: usize, bytes: i64, run: impl FnOnce() -> R) -> R {
     ROOM.set(HELD.get() + bytes);
     let result = with(large, u64::MAX, run);
@@ -107,8 +108,8 @@ pub fn within<R>(large: usize, bytes: i64, run: impl FnOnce() -> R) -> R {
     result
 }
 
-/// Bytes that this thread has allocated and not freed.
-#[allow(dead_code)] // tests/memory.rs asks; tests/handles does not.
+/// The bytes that this thread has allocated and not freed.
+#[allow(dead_code)] // Only tests/memory.rs uses it.
 pub fn held() -> i64 {
     HELD.get()
 }

@@ -1,7 +1,7 @@
-//! A handle holds its last complete result, or says that it has none, whatever went wrong in between; and its next call works.
+//! After any failure a handle holds its last complete result, or none, and its next call works.
 
 #[path = "../abi/call.rs"]
-#[allow(dead_code)] // of the bad input, the call
+#[allow(dead_code)] // only the call is used
 mod call;
 mod lack_of_memory;
 mod lack_of_memory_adhesion;
@@ -11,7 +11,7 @@ mod limited_memory;
 mod panics;
 mod panics_with_effects;
 #[path = "../adhesion/support.rs"]
-#[allow(dead_code)] // of all, the sphere
+#[allow(dead_code)] // only the sphere is used
 mod spheres;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -19,7 +19,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use call::{last_error, Call, Through, MX, MY};
 use contact_normal::ffi::*;
 
-/// One at a time: the demand for a panic is one for the process.
+/// Tests run one at a time, because the demand for a panic is global.
 fn alone() -> MutexGuard<'static, ()> {
     static ALONE: Mutex<()> = Mutex::new(());
     ALONE.lock().unwrap_or_else(PoisonError::into_inner)
@@ -35,7 +35,7 @@ impl Drop for Handle {
     }
 }
 
-/// Pressures, then deformed distance and displacement, then the contact area, as the handle holds them; none if it says so.
+/// The pressures, deformed distances and displacements that the handle holds, and its contact area, or None.
 fn held(handle: &Handle) -> Option<(Vec<f64>, Vec<i32>)> {
     let n = MX * MY;
     let (mut numbers, mut contact) = (vec![-77.0; 3 * n], vec![-77; n]);
@@ -57,7 +57,7 @@ fn held(handle: &Handle) -> Option<(Vec<f64>, Vec<i32>)> {
 
 type Effect = fn(&mut Call);
 
-/// None, and each effect of a scene.
+/// No effect, and each effect of a scene.
 const EFFECTS: [(&str, Effect); 7] = [
     ("none", |_| {}),
     ("influence", |c| _ = c.use_table()),
@@ -75,7 +75,7 @@ unsafe extern "C" fn cancel(_: *const contact_normal_progress, _: *mut libc::c_v
     1
 }
 
-/// What makes a solve refused, and its status.
+/// The status of a refused solve, and the change that causes it.
 type Refused = (i32, Effect);
 
 const REFUSED: [Refused; 4] = [
@@ -102,7 +102,7 @@ fn new_call(effect: Effect, method: i32) -> Call {
     call
 }
 
-/// Solves with the handle: as a handle that nothing happened to.
+/// Solves with the handle: the result equals that of a new handle.
 fn works(handle: &Handle, effect: Effect, method: i32, what: &str) {
     let (mut call, mut expected) = (new_call(effect, method), new_call(effect, method));
     assert_eq!(call.run(Through::SolverSolve, handle.0), (CONTACT_NORMAL_OK, String::new()), "{what}");
@@ -123,7 +123,7 @@ fn a_refused_solve_leaves_the_result_before() {
                 let mut call = new_call(effect, 0);
                 spoil(&mut call);
                 let (got, message) = call.run(Through::SolverSolve, handle.0);
-                // With limits a fixed area is refused whatever it is.
+                // With limits any fixed area is refused.
                 let unsupported = name == "pressure_limit" && got == CONTACT_NORMAL_UNSUPPORTED;
                 assert!(got == status || unsupported && message.contains("FIXED"), "{name}: {got}, {message}");
             };
@@ -133,7 +133,7 @@ fn a_refused_solve_leaves_the_result_before() {
             let before = held(&handle);
             refuse();
             assert!(held(&handle) == before, "{name}: the result is another after status {status}");
-            // It is a start for the next step, as if nothing had been refused.
+            // The result is a start for the next step.
             let mut step = new_call(effect, 0);
             step.options.known.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
             assert_eq!(step.run(Through::SolverSolve, handle.0), (CONTACT_NORMAL_OK, String::new()), "{name}");
@@ -218,7 +218,7 @@ fn nothing_that_a_scene_names_is_ignored() {
                 c.set_compliance(3, 2e-5);
             },
         ),
-        // Of another kind.
+        // A layer of another kind, with one compliance per element.
         (
             "layer",
             |c| c.use_layer().compliance = 1e-6,
@@ -249,14 +249,14 @@ fn nothing_that_a_scene_names_is_ignored() {
     }
 }
 
-/// Arrays that a callback spoils.
+/// A callback that overwrites the array `user`.
 unsafe extern "C" fn spoil(_: *const contact_normal_progress, user: *mut libc::c_void) -> i32 {
-    // SAFETY: one value per element, which nobody else looks at now.
+    // SAFETY: one value per element, which nothing else reads now.
     (0..MX * MY).for_each(|i| unsafe { user.cast::<f64>().add(i).write(1e-300) });
     0
 }
 
-/// Limits a little above the largest pressure are reached on the way only: then the scene is solved again, without them.
+/// Only iterates reach limits that are a little above the largest pressure. The scene is then solved again, without them.
 #[test]
 fn distances_are_read_before_a_callback_runs() {
     let _alone = alone();
@@ -281,7 +281,7 @@ fn distances_are_read_before_a_callback_runs() {
     }
 }
 
-/// The tractions of unlike bodies change the distances: then the scene is solved in turns.
+/// The tractions of unlike bodies change the distances, so that the scene is solved in turns.
 #[test]
 fn distances_of_unlike_bodies_are_read_before_a_callback_runs() {
     let _alone = alone();

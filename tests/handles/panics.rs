@@ -1,4 +1,4 @@
-//! A panic in the core comes back as INTERNAL, with its text, untouched outputs and nothing on stderr; the next call works.
+//! A panic in the core becomes the status INTERNAL, with its message, unchanged outputs and no text on stderr; the next call works.
 
 use std::ptr::null_mut;
 use std::sync::atomic::Ordering;
@@ -7,7 +7,7 @@ use crate::call::{Call, Through};
 use contact_normal::ffi::*;
 use contact_normal::panics::BLOCKS;
 
-/// A call whose product panics after so many blocks; true when it came to that.
+/// Makes a call whose product panics after `block` blocks; true if it panicked.
 fn panics_at(block: i64, call: &mut Call, through: Through, handle: *mut contact_normal_solver) -> bool {
     BLOCKS.store(block, Ordering::Relaxed);
     let before = call.outputs();
@@ -60,7 +60,7 @@ fn a_panic_anywhere_is_a_status_and_the_next_call_works() {
     on_a_worker();
 }
 
-/// A grid that several threads share: the panic is a worker's.
+/// A grid that several threads share: a worker panics.
 fn on_a_worker() {
     const M: usize = 160;
     let centre = |i: usize| i as f64 + 0.5 - 0.5 * M as f64;
@@ -85,11 +85,10 @@ fn on_a_worker() {
     }
 }
 
-/// Set in the process that panics below.
+/// The variable is set in the child process, which panics.
 const CHILD: &str = "CONTACT_NORMAL_TEST_PANICS";
 
-/// In a process of its own: the test harness catches what a test prints, so only that shows what comes out on stderr; and the demand
-/// for a panic is not that of the test above.
+/// In a child process, because the test harness captures the output of a test, and because the demand for a panic must not affect the test above.
 #[test]
 fn a_panic_is_not_announced() {
     if std::env::var_os(CHILD).is_some() {

@@ -1,4 +1,4 @@
-//! A caught panic in a product leaves a solver of any effect as it was: its next solve is that of a new one.
+//! A caught panic in a product does not affect later solves, with any effect: the next solve equals that of a new solver.
 
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::atomic::Ordering;

@@ -1,5 +1,5 @@
-//! What the library promises of accuracies, on surfaces with exact solutions: some by which its estimates were measured, and some that
-//! nothing was chosen by. Every run counts. `make accuracy` prints the same with more seeds.
+//! The promises of accuracies, on surfaces with exact solutions: some with which the estimates were developed, and some that had no part in it. Every
+//! run counts. `make accuracy` prints the same with more seeds.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Load, Scene};
@@ -10,15 +10,15 @@ use crate::random::Random;
 use crate::surfaces::{held_back, studied, Surface, BODIES};
 
 const SIZES: [usize; 4] = [64, 100, 128, 200];
-/// Grids with few elements across the contact, of which those count that have enough for the quantity.
+/// Grids with few elements across the contact. A quantity is judged on those with enough elements for it.
 const COARSE: [usize; 4] = [16, 24, 32, 48];
 
-/// At most 5 % below 0.3 of the true error, at most 10 % unknown, of each surface; infinite peaks are never trusted. A cusp (r^1.5) is the
-/// exception that is allowed to be unknown: the pressure of its peak is finite by a hair.
+/// On each surface at most 5 % of the estimates are below 0.3 of the true error, at most 10 % are unknown, and infinite peaks have no estimate. Only
+/// the peak of a cusp (r^1.5) may be unknown, because its pressure is nearly singular.
 fn assert_estimates_hold(surfaces: judge::Surfaces, families: usize) {
     for ((quantity, family), estimates) in estimates(surfaces, 0..2, &COARSE) {
         let what = format!("{} of {family}, few elements: {estimates:?}", QUANTITIES[quantity]);
-        // A peak that these do not resolve is unknown.
+        // The estimate of a peak that these grids do not resolve is unknown.
         assert!(estimates.low() <= 0.05, "{what}");
         assert_eq!(estimates.trusted_infinite, 0, "{what}");
     }
@@ -26,7 +26,7 @@ fn assert_estimates_hold(surfaces: judge::Surfaces, families: usize) {
     assert_eq!(found.len(), QUANTITIES.len() * families);
     for ((quantity, family), estimates) in found {
         let what = format!("{} of {family}: {estimates:?}", QUANTITIES[quantity]);
-        // But for areas of a few contacts all have enough elements across.
+        // Except for areas of a few contacts all have enough elements across.
         assert!(estimates.runs >= 2 * 2, "{what}");
         assert!(estimates.low() <= 0.05, "{what}");
         assert!(estimates.unknown() <= 0.1 || family == "r^1.5" && quantity == 1, "{what}");
@@ -44,8 +44,8 @@ fn estimates_hold_on_surfaces_that_nothing_was_chosen_by() {
     assert_estimates_hold(held_back, 10);
 }
 
-/// Of OK answers at most 2 % beyond the target and none by more than 1.5, at least 80 % within one doubling of the cheapest safe grid,
-/// and with 6 elements across. A flat punch of first order may need more elements than there are; nothing stagnates.
+/// Of the OK results at most 2 % miss the target, and none by more than a factor of 1.5. At least 80 % are within one doubling of the cheapest safe
+/// grid, and all have 6 elements across. Only a flat punch, of first order, may need more elements than allowed; no search stagnates.
 fn assert_searches_hold(surfaces: judge::Surfaces, families: usize) {
     let all = searches(surfaces, 1..2);
     assert_eq!(all.len(), families * 2 * TARGETS.len());
@@ -64,7 +64,7 @@ fn assert_searches_hold(surfaces: judge::Surfaces, families: usize) {
     }
     ratios.sort_by(f64::total_cmp);
     assert!(50 * missed <= all.len(), "{missed} of {}", all.len());
-    // Of nearly all the cheapest grid is known.
+    // For at least 80 % the cheapest grid is known.
     assert!(10 * ratios.len() >= 8 * all.len(), "{} of {}", ratios.len(), all.len());
     let near = ratios.iter().filter(|ratio| **ratio <= 4.0).count();
     assert!(10 * near >= 8 * ratios.len() && ratios[ratios.len() / 2] <= 4.0, "{ratios:?}");
@@ -80,7 +80,7 @@ fn accuracies_are_kept_on_surfaces_that_nothing_was_chosen_by() {
     assert_searches_hold(held_back, 10);
 }
 
-/// r^4 around the middle.
+/// The studied surface of this name.
 fn surface(name: &str) -> Surface {
     let all = studied(&mut Random::new(3));
     all.into_iter().find(|surface| surface.family == name).expect("the surface")
@@ -111,7 +111,7 @@ fn targets_of_the_largest_pressure_and_the_area_are_kept() {
             "{name}: {}",
             off(measures.corrected_area, surface.area)
         );
-        // The force alone takes fewer.
+        // The force alone needs fewer elements.
         let alone = outcome_of(&surface, &Accuracy::new(1e-2));
         assert!(
             alone.solver.expect("a result").grid().len() < outcome.solver.expect("a result").grid().len(),
@@ -123,7 +123,7 @@ fn targets_of_the_largest_pressure_and_the_area_are_kept() {
     assert!(cone.reason.contains("estimate"), "{}", cone.reason);
 }
 
-/// Each row names a grid within one doubling of the cheapest that is safe, in 95 %, whose true error is at most the target but for 2 %.
+/// At least 85 % of the rows name a grid within one doubling of the cheapest safe one, and at most 2 % a grid whose true error exceeds the target.
 #[test]
 fn prices_name_the_grid_that_does() {
     let (mut rows, mut near, mut beyond) = (0, 0, 0);
@@ -172,7 +172,7 @@ fn what_is_not_to_be_had_is_said() {
     assert_eq!((cone[0].obstacle, cone[0].grid), (Some(Obstacle::Singular), None));
     let rows = list(&surface("r^2"), none, Quantity::Force, &[1e-15, 1e-3]);
     assert_eq!((rows[0].obstacle, rows[1].obstacle), (Some(Obstacle::RoundOff), None));
-    // How many samples there are, and so which grid is found, depends on the clock: limits are such as no grid keeps.
+    // The number of samples, and so the grid, depends on the clock: the limits are below those of any grid.
     let (bytes, elements) = (8 * 16 * 16, 16 * 16);
     for (accuracy, obstacle) in [
         (Accuracy { max_bytes: bytes, ..none }, Obstacle::Memory),
@@ -181,13 +181,13 @@ fn what_is_not_to_be_had_is_said() {
     ] {
         let row = list(&surface("r^2"), accuracy, Quantity::Force, &[1e-3])[0];
         assert_eq!(row.obstacle, Some(obstacle), "{row:?}");
-        // What it would take is told all the same.
+        // The row still has the costs.
         let grid = row.grid.expect("a grid");
         assert!(row.seconds > Some(0.0) && row.bytes > bytes && grid.len() as u64 > elements, "{row:?}");
     }
 }
 
-/// From an array of its own the list samples coarser grids; the surface callback cancels.
+/// Without a callback the list samples coarser grids from the array. A surface callback may cancel.
 #[test]
 fn a_price_list_needs_no_callback_and_obeys_one() {
     let surface = surface("r^2");
@@ -202,7 +202,7 @@ fn a_price_list_needs_no_callback_and_obeys_one() {
         false
     };
     let (_, from_callback) = list(Some(&mut write)).expect("a price list");
-    // Coarser grids have means of the array, which are a little above the surface: an estimate near its target may fall on the other side.
+    // On coarser grids means of the array are a little above the surface, so that an estimate near its target may miss it.
     for (array, callback) in from_array.iter().zip(&from_callback) {
         let [array, callback] = [array, callback].map(|row| row.grid.expect("a grid").mx);
         assert!(array <= 2 * callback && callback <= 2 * array, "{array} {callback}");
@@ -212,7 +212,8 @@ fn a_price_list_needs_no_callback_and_obeys_one() {
     assert_eq!((stop, rows.len(), rows[0].grid), (Outcome::Cancelled, TARGETS.len(), None));
 }
 
-/// The row of a grid that the list has solved itself has the products of that solve: those of a direct one, too, which tells a residual only at its end.
+/// The row of a grid that the list has solved itself has the products of that solve. This includes direct solves, which report a residual at their
+/// end only.
 #[test]
 fn a_row_has_the_products_of_its_grid() {
     let grid = Grid::new(16, 16, 1.0 / 16.0, 1.0 / 16.0).expect("a grid");

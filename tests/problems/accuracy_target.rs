@@ -1,5 +1,5 @@
-//! An accuracy instead of a grid: the true error of the ellipse meets what was asked for, limits end the refinement with the
-//! best result, callbacks cancel it, and what cannot be reached is said.
+//! An accuracy instead of a grid: the true error of the ellipse meets the target, limits end the refinement with the best result, callbacks cancel
+//! it, and the message says what cannot be reached.
 
 use crate::paper as case;
 
@@ -10,8 +10,8 @@ use contact_normal::solver::{
     cost_of_accuracy, solve_to_accuracy, Accuracy, Method, Options, Outcome, Quantity, Refinement,
 };
 
-/// True error over the target at most, where the target is met: the estimate may be too small by this (the effectivity that
-/// error estimates are judged by).
+/// The largest allowed ratio of true error and target, if the target is met: the estimate may be too small by this factor (the effectivity of error
+/// estimates).
 const EFFECTIVITY: f64 = 3.0;
 const START: usize = 16;
 
@@ -20,7 +20,7 @@ fn exact() -> Hertz {
     hertz(case::CURVATURE.0, case::CURVATURE.1, case::APPROACH, compliance).expect("a contact")
 }
 
-/// The ellipse on 16 x 16 elements, and what is finer.
+/// Refines the ellipse from 16 x 16 elements.
 fn solved(load: Load, accuracy: Accuracy, options: &Options) -> Refinement {
     let h = case::undeformed_distance(START);
     let scene = Scene { load, ..case::scene(START, &h) };
@@ -35,10 +35,10 @@ fn by_approach(accuracy: Accuracy) -> Refinement {
     solved(Load::Approach(case::APPROACH), accuracy, &Options::default())
 }
 
-/// A result that is solved, on 16 x 16 elements.
+/// Asserts a converged result on 16 x 16 elements.
 fn assert_start_is_kept(outcome: &Refinement) {
     assert_eq!(grid_of(outcome).mx, START, "{}", outcome.reason);
-    // 16 x 16 elements have the force to some percent (tests/problems/hertz.rs); a wrong one would be off by more than a tenth.
+    // With 16 x 16 elements the error of the force is some percent (tests/problems/hertz.rs).
     assert!((outcome.report.measures.force / exact().force - 1.0).abs() < 0.1);
     assert!(outcome.report.measures.certificate.residual <= 1e-6);
 }
@@ -63,7 +63,7 @@ fn the_true_error_meets_the_target() {
             assert!(error <= EFFECTIVITY * target, "{target:e}, {load:?}: {error:e} on {} x {}", grid.mx, grid.my);
             // Over the same rectangle; powers of two are exact.
             assert_eq!((grid.mx as f64 * grid.dx, grid.my as f64 * grid.dy), (20.0, 12.0));
-            // One row for each grid that full multigrid has seen, the finest one last.
+            // One row for each grid of full multigrid, the finest one last.
             let ledger = outcome.solver.as_ref().expect("a result").ledger();
             let last = ledger.last().expect("rows");
             assert!(ledger.len() >= 2, "{ledger:?}");
@@ -80,7 +80,7 @@ fn a_finer_target_takes_a_finer_grid() {
 
 #[test]
 fn a_surface_callback_gives_what_a_refined_parabola_gives() {
-    // A parabola is reproduced by the cubics but for round-off, so only the last digits differ.
+    // The cubics reproduce a parabola up to round-off, so that only the last digits differ.
     let accuracy = Accuracy::new(1e-3);
     let array = by_approach(accuracy);
     let mut asked = Vec::new();
@@ -89,14 +89,14 @@ fn a_surface_callback_gives_what_a_refined_parabola_gives() {
         h.copy_from_slice(&case::undeformed_distance(grid.mx));
         false
     };
-    // Not read.
+    // The array is not read.
     let scene = case::scene(START, &[]);
     let outcome =
         solve_to_accuracy(&scene, &Options::default(), &accuracy, Some(&mut surface), None).expect("a solvable scene");
     assert_eq!((outcome.stop, grid_of(&outcome)), (Outcome::Converged, grid_of(&array)));
     assert_eq!((asked.first(), asked.last()), (Some(&START), Some(&grid_of(&outcome).mx)));
     let (found, other) = (outcome.report.measures.force, array.report.measures.force);
-    // Twice the tolerance 1e-6 of the residual.
+    // Twice the tolerance of the residual, 1e-6.
     assert!((found / other - 1.0).abs() < 2e-6, "{found} and {other}");
 }
 
@@ -137,7 +137,7 @@ fn callbacks_cancel_and_what_was_solved_is_kept() {
     let outcome = solve_to_accuracy(&scene, &options, &accuracy, Some(&mut at_once), None).expect("a solvable scene");
     assert!(outcome.stop == Outcome::Cancelled && outcome.solver.is_none() && outcome.reached.is_none());
 
-    // 16 x 16 elements are a coarser grid of the next solve: what ends is a solve on more.
+    // 16 x 16 elements are also a coarser grid of the next solve, which is the one that is cancelled.
     let mut progress = |told: &contact_normal::solver::Progress| told.mx > START;
     let outcome = solve_to_accuracy(&scene, &options, &accuracy, None, Some(&mut progress)).expect("a solvable scene");
     assert_eq!(outcome.stop, Outcome::Cancelled);
@@ -161,7 +161,7 @@ fn a_solve_that_does_not_converge_ends_it() {
     let outcome = solved(Load::Approach(case::APPROACH), Accuracy::new(1e-3), &options);
     assert_eq!(outcome.stop, Outcome::IterationLimit);
     assert!(outcome.reason.contains("max_cycles was reached on 16 x 16"), "{}", outcome.reason);
-    // What the residual hides is part of it.
+    // The estimated error includes that by the residual.
     let residual = outcome.report.measures.certificate.residual;
     assert!(outcome.reached.is_some_and(|reached| reached >= residual) && residual > 1e-6);
 }
@@ -178,7 +178,7 @@ fn no_contact_is_no_error() {
 #[test]
 fn elements_without_surface_stay_so() {
     let mut h = case::undeformed_distance(START);
-    // A hole in the middle of the contact area.
+    // The contact area has a hole in its middle.
     h[START * 7 + 8] = f64::INFINITY;
     let scene = case::scene(START, &h);
     let accuracy = Accuracy { max_elements: 64 * 64, ..Accuracy::new(1e-9) };
@@ -195,7 +195,7 @@ fn elements_without_surface_stay_so() {
 
 #[test]
 fn a_solve_that_takes_too_long_is_dropped() {
-    // The prediction allows 32 x 32 elements, if the machine is not asleep; then the surface takes all of the time and more.
+    // The prediction allows 32 x 32 elements. Then the surface callback takes longer than the time limit.
     let h = case::undeformed_distance(START);
     let (scene, seconds) = (case::scene(START, &h), 1.0);
     let mut surface = |grid: &Grid, h: &mut [f64]| {
@@ -215,8 +215,8 @@ fn a_solve_that_takes_too_long_is_dropped() {
 
 #[test]
 fn without_an_estimate_it_is_given_up() {
-    // A pin of one element, the last of a block of four in both directions: samples on coarser grids, at the middle of blocks,
-    // do not see it, and touch nothing.
+    // A pin of one element, the last of a block of four in both directions. Samples on coarser grids, in the middle of blocks, miss it, so that there
+    // is no contact.
     let mut surface = |grid: &Grid, h: &mut [f64]| {
         h.fill(1.0);
         h[grid.index(grid.mx / 2 + 3, grid.my / 2 + 3)] = 0.0;
@@ -226,13 +226,14 @@ fn without_an_estimate_it_is_given_up() {
     let outcome = solve_to_accuracy(&scene, &Options::default(), &Accuracy::new(1e-2), Some(&mut surface), None)
         .expect("a scene");
     assert_eq!((outcome.stop, outcome.reached), (Outcome::Stagnated, None), "{}", outcome.reason);
-    // 16 x 16 does not count, 32 and finer ones do.
+    // Three finer grids without an estimate end the search.
     assert_eq!(grid_of(&outcome).mx, 128);
     assert!(outcome.reason.contains("no estimate") && outcome.reason.contains("not known"), "{}", outcome.reason);
 }
 
-/// Lines in plane strain, one element across two periods: finer grids keep the one element, along which nothing differs. The pressures are those of
-/// Westergaard (J. Appl. Mech. 6, 1939): the largest is `2 sqrt(pm p*)` for a mean of pm, with `p* = pi E* times the height over the length` of the wave.
+/// Lines in plane strain, one element across, with two periods. Finer grids keep the one element, across which nothing varies. The pressures are
+/// those of Westergaard (J. Appl. Mech. 6, 1939): the largest is `2 sqrt(pm p*)` for a mean of pm, with `p* = pi E*` times the height over the length
+/// of the wave.
 #[test]
 fn a_line_in_plane_strain_keeps_its_one_element() {
     let (amplitude, across, part) = (0.01, 0.5, 0.3);
@@ -255,7 +256,7 @@ fn a_line_in_plane_strain_keeps_its_one_element() {
         let (along, one) = on(&grid_of(&found));
         assert!(along >= 80 && one == 1, "{along} x {one}");
         let off = found.report.measures.max_pressure / (2.0 * full * part.sqrt()) - 1.0;
-        // The element at the top has the mean of its pressures: `(pi/along)^2/6` less, in the parts of the wave.
+        // The element at the top has its mean pressure, which is smaller by a part of about `(pi/along)^2/6`.
         assert!(off.abs() <= 2e-3, "{off:e} on {along}");
         let wanted = (Quantity::Force, &[1e-2, 1e-3, 1e-4][..]);
         let (_, rows) = cost_of_accuracy(&scene, &options, &Accuracy::new(0.0), wanted, None, None).unwrap();

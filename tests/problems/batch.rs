@@ -1,5 +1,4 @@
-//! Batches: the same bits as one solve after the other, whatever the number of workers and the order; a problem that fails
-//! harms no other.
+//! Batches: the bits of one solve after the other, for any number of workers and any order. A problem that fails does not affect the others.
 
 use std::ptr::{null, null_mut};
 
@@ -18,7 +17,7 @@ fn grid() -> Grid {
     Grid::new(M, M, 0.25, 0.2).expect("a grid")
 }
 
-/// Balls of several sizes, some wavy, four of them at each of several places: the window of one would do for the next.
+/// Balls of several sizes, some wavy, four of them at each of several places, so that the window of one fits the next.
 fn surface(k: usize) -> Vec<f64> {
     let place = (k / 4) as f64;
     let (centre_x, centre_y) = (M as f64 * (0.4 + 0.1 * place), M as f64 * (0.6 - 0.05 * place));
@@ -39,7 +38,7 @@ fn load(k: usize) -> Load {
     }
 }
 
-/// Everything that a solve finds, in bits.
+/// The result of a solve, in bits.
 type Found = (Outcome, Vec<u64>, Vec<u64>, Vec<bool>, u64, u64);
 
 fn found(state: &State, stop: Outcome, cycles: u64) -> Found {
@@ -63,7 +62,7 @@ fn a_batch_has_the_bits_of_one_solve_after_the_other() {
     let count = 12;
     let h: Vec<Vec<f64>> = (0..count).map(surface).collect();
     let pressure = vec![100.0; M * M];
-    // In contact only where there is a deep enough penetration to be worth a guess: the middle of the grid.
+    // The guess has contact in the middle of the grid only, where all balls penetrate.
     let contact: Vec<bool> = (0..M * M).map(|i| (i % M).abs_diff(M / 2) < 9 && (i / M).abs_diff(M / 2) < 7).collect();
     let guess = Guess { pressure: &pressure, contact: &contact };
     let cold = Options::default();
@@ -87,7 +86,7 @@ fn a_batch_has_the_bits_of_one_solve_after_the_other() {
         for threads in [1, 2, 3] {
             let options = Options { threads, ..options };
             let mut solver = Solver::new(&problems[0].scene, &options).expect("a solver");
-            // Twice: the second batch meets workers that have solved.
+            // Twice: in the second batch the workers have solved before.
             for _ in 0..2 {
                 let batch = solver
                     .solve_batch(&problems, &options, |_, outcome, state| {
@@ -259,7 +258,7 @@ fn one_array_for_two_problems_is_refused() {
     assert!(last_error().contains("pressure of problem 1 and pressure of problem 3 overlap"), "{}", last_error());
     assert!(batch.statuses.iter().all(|&status| status == -77), "the call is refused, not its problems");
     assert!(batch.p.iter().flatten().all(|&p| p == UNTOUCHED));
-    // Part of another array, and the undeformed distance that all may share.
+    // An overlap with a part of another array. The undeformed distance may be shared.
     batch.fields[3].pressure = batch.p[2][5..].as_mut_ptr();
     assert_eq!(batch.solve(), CONTACT_NORMAL_INVALID_ARGUMENT);
     batch.fields[3].pressure = batch.p[3].as_mut_ptr();
@@ -285,7 +284,7 @@ fn arrays_of_outputs_may_be_null() {
         )
     };
     assert_eq!(status, CONTACT_NORMAL_OK);
-    // The options are the set-up's: the defaults have another number of threads.
+    // The options must be those of the set-up; the defaults have another number of threads.
     // SAFETY: as above.
     let status = unsafe {
         let (solver, scenes) = (batch.solver, batch.scenes.as_ptr());

@@ -1,5 +1,5 @@
-//! Soft surfaces: the limit displaces by a small part of the distances between elements. Which elements are at it follows from the heights, as long as a
-//! method does not go round in circles between them. The certificates are computed by direct sums.
+//! Soft surfaces: the displacements by the limit are a small part of the distances between elements. The heights decide which elements are at their
+//! limit, as long as a method does not cycle between them. The certificates are computed by direct sums.
 
 use crate::limits_that_differ::assert_conditions;
 use crate::periodic_by_approach::rough;
@@ -27,7 +27,7 @@ fn surface(kind: usize, m: usize, random: &mut Random) -> Vec<f64> {
     h
 }
 
-/// Two or three products solve most of them. The displacements of a nearly flat top decide about more elements than the start leaves open.
+/// They take at most 15 products on average. Displacements of a nearly flat top decide about more elements than the start from sorted heights does.
 #[test]
 fn soft_surfaces_are_solved_from_their_heights() {
     let (random, mut products) = (&mut Random::new(11), 0.0);
@@ -36,7 +36,7 @@ fn soft_surfaces_are_solved_from_their_heights() {
         let (dx, dy) = (random.between(0.3, 3.0), random.between(0.3, 3.0));
         let grid = Grid::new(m, m, dx, dy).unwrap();
         let h = surface(k % 3, m, random);
-        // One element at its limit displaces itself by about 3 dx p.
+        // The own displacement of an element at its limit is about 3 dx p.
         let limit = random.decades(1e-7, 1e-4) / dx;
         let limits: Vec<f64> =
             h.iter().map(|_| if k % 2 == 0 { limit } else { limit * random.decades(1.0, 5.0) }).collect();
@@ -58,18 +58,18 @@ fn soft_surfaces_are_solved_from_their_heights() {
     assert!(products <= 15.0 * 60.0, "{products}");
 }
 
-/// Elements along an edge of the waves.
+/// The number of elements along a side.
 const M: usize = 32;
 
-/// Waves along x. Along y each element is higher by so many last bits, or as high.
+/// Waves along x. Along y each element is higher than the last by `last_bits` units of round-off.
 fn waves(seed: usize, last_bits: f64) -> Vec<f64> {
     let height =
         |k: usize| (0.9 * (k % M) as f64 + seed as f64).sin() + 1.5 + last_bits * f64::EPSILON * (k / M) as f64;
     (0..M * M).map(height).collect()
 }
 
-/// Bodies so stiff, or limits so small, that the rounding of the distances hides all displacements: the contact area is the bearing area, which the
-/// sorted distances give (Abbott & Firestone 1933).
+/// Bodies are so stiff, or limits so small, that all displacements are below the rounding of the distances. The contact area is then the bearing
+/// area, which follows from the sorted distances (Abbott & Firestone 1933).
 #[test]
 fn the_lowest_elements_are_at_their_limit() {
     let grid = Grid::new(M, M, 1.0, 1.0).unwrap();
@@ -87,7 +87,7 @@ fn the_lowest_elements_are_at_their_limit() {
             assert_eq!(stop, Outcome::Converged, "{what}: {report:?}");
             let mut sorted = h.clone();
             sorted.sort_by(f64::total_cmp);
-            // The element that carries what is left; the certificate allows for two roundings of the approach.
+            // The element that carries the rest of the force; the certificate allows two roundings of the approach.
             let (depth, rounding) = (sorted[700], 4.0 * f64::EPSILON * sorted[700]);
             for (h, p) in h.iter().zip(&solver.state().p) {
                 let holds = if *h < depth - rounding {

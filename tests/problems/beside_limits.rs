@@ -1,4 +1,4 @@
-//! Elements at their pressure limit touch like others: in searches, in corrected areas, and for each method.
+//! Elements at their pressure limit are in contact: in searches, in corrected areas, and for each method.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Each, Load, PressureLimit, Scene};
@@ -19,7 +19,7 @@ fn limited<'a>((grid, h): &'a (Grid, Vec<f64>), load: Load, limit: f64) -> Scene
     Scene { pressure_limit: Some(PressureLimit(Each::Uniform(limit))), ..Scene::new(*grid, h, BODIES, load) }
 }
 
-/// All of a punch at its limit: the force is the limit times the area, and no finer grid is needed.
+/// All elements of a punch are at their limit: the force is the limit times the area, and no finer grid is needed.
 #[test]
 fn a_search_ends_where_all_of_the_contact_is_at_its_limit() {
     let grid = Grid::new(32, 32, 1.0, 1.0).expect("a grid");
@@ -34,8 +34,8 @@ fn a_search_ends_where_all_of_the_contact_is_at_its_limit() {
     assert!((found.report.measures.force / 0.256 - 1.0).abs() < 1e-12);
 }
 
-/// The corrected area is that of the elements that touch, less a part of an element for each change along the rows and columns of these: the same part for
-/// any limit.
+/// The corrected area is that of the elements in contact, less a part of an element for each change of contact along rows and columns: the same part
+/// for any limit.
 #[test]
 fn corrected_areas_count_elements_at_their_limit() {
     let part = |m: usize, load: Load, limit: f64| {
@@ -58,7 +58,7 @@ fn corrected_areas_count_elements_at_their_limit() {
     }
 }
 
-/// All pressures of a punch are at their limit: a little more approach changes none of them, so that the stiffness is 0. It used to lack contact.
+/// All pressures of a punch are at their limit. A little more approach changes none of them, so that the stiffness is 0.
 #[test]
 fn the_stiffness_is_zero_where_all_of_the_contact_is_at_its_limit() {
     let grid = Grid::new(16, 16, 1.0, 1.0).expect("a grid");
@@ -70,7 +70,7 @@ fn the_stiffness_is_zero_where_all_of_the_contact_is_at_its_limit() {
     assert_eq!((rows[1].error, rows[1].lack), (Some(0.0), None));
 }
 
-/// Five elements with most of the force at their limits: exchanges of elements went round in NORM, and PROJECTED_CG stood.
+/// Five elements with most of the force at their limits: no method may cycle or stagnate.
 #[test]
 fn each_method_solves_a_force_beside_limits() {
     let grid = Grid::new(1, 5, 1.0, 1.0).expect("a grid");
@@ -88,7 +88,7 @@ fn each_method_solves_a_force_beside_limits() {
     }
 }
 
-/// Beside limits there is no estimate of the error, so that no tolerance follows from it; nor from the start of NORM.
+/// With a limit there is no estimate of the error, and so no tolerance from it. Nor is there one from the start of NORM.
 #[test]
 fn no_tolerance_follows_from_an_error_that_is_not_known() {
     let surface = bowl(64);

@@ -1,4 +1,5 @@
-//! The bill of effects: its changes against solves of the whole grid with and without each effect, its verdicts, and what is left out by it.
+//! The bill of effects: its changes compared with solves of the whole grid with and without each effect, its verdicts, and the effects that it leaves
+//! out.
 
 use contact_normal::adhesion::{Law, Start};
 use contact_normal::error::Error;
@@ -30,7 +31,7 @@ pub fn plain(h: &[f64]) -> Scene<'_> {
 }
 
 pub fn bill(scene: &Scene<'_>, target: f64, wanted: &[Quantity]) -> Vec<BillRow> {
-    // More than enough seconds: the grids do not depend on the machine.
+    // With this time the grids do not depend on the machine.
     let asked = BillOptions { max_seconds: 1e3, ..BillOptions::new(target) };
     let (stop, rows) = effects_bill(scene, &Options::default(), &asked, wanted, None).expect("a bill");
     assert_eq!(stop, Outcome::Converged);
@@ -44,7 +45,7 @@ fn solved(scene: &Scene<'_>, wanted: &[Quantity]) -> Vec<f64> {
     rows.iter().map(|row| row.value.unwrap_or(0.0)).collect()
 }
 
-/// All effects that go together, of sizes that are drawn.
+/// All effects that can be combined, with random sizes.
 fn with_effects<'a>(h: &'a [f64], patch: &'a [i32], random: &mut Random) -> Scene<'a> {
     let mut scene = plain(h);
     let size = 10f64.powf(-3.0 + 4.0 * random.uniform());
@@ -83,7 +84,7 @@ fn changes_and_verdicts_are_those_of_the_whole_grid() {
             let q = wanted.iter().position(|quantity| *quantity == row.quantity).expect("asked for");
             let change = solved(&without, &wanted)[q] - before[q];
             let (value, found) = (row.value.expect("a value"), row.change.expect("a change"));
-            // The last of the small grids is the whole one here: what differs is the tolerance, a hundredth of the target at most.
+            // Here the last grid is the whole one: the differences are by the tolerance, at most a hundredth of the target.
             let allowed = 2e-4 * before[q].abs();
             assert!((found - change).abs() <= allowed, "{seed} {row:?}: {change:e}");
             assert!((value - before[q]).abs() <= allowed, "{seed} {row:?}");
@@ -98,7 +99,7 @@ fn changes_and_verdicts_are_those_of_the_whole_grid() {
     assert!(decided > 40, "{decided}");
 }
 
-/// In the short time that it takes by default, on a grid of which the small ones are a small part.
+/// With the default time limit, on a grid much larger than those of the bill.
 #[test]
 fn small_grids_tell_of_the_whole_one() {
     let m = 256;
@@ -139,7 +140,7 @@ fn like_bodies_in_the_place_of_unlike_ones_have_their_compliances() {
 #[test]
 fn a_thin_coating_is_a_layer() {
     let h = ball();
-    // A hundredth of an element thick, and as soft as that shows.
+    // A hundredth of an element thick, and so soft that it has an effect.
     let scene = Scene { coating: Some(Coating::of_body_1(5e-4, 40.0, 0.3)), ..plain(&h) };
     let rows = bill(&scene, 1e-2, &WANTED);
     let verdicts = |omission: Omission| -> Vec<Verdict> {
@@ -147,7 +148,7 @@ fn a_thin_coating_is_a_layer() {
     };
     assert!(verdicts(Omission::Coating).contains(&Verdict::Needed), "{rows:#?}");
     assert_eq!(verdicts(Omission::CoatingAsLayer), vec![Verdict::Negligible; 3], "{rows:#?}");
-    // One of both takes the place of the coating: they are no pair.
+    // Both rows replace the coating, so that they are no pair.
     assert!(rows.iter().all(|row| row.other.is_none()));
 }
 
@@ -175,7 +176,8 @@ fn what_has_no_bill_is_refused_by_name() {
     assert!(matches!(refused, Err(Error::Unsupported(message)) if message.contains("influence")));
 }
 
-/// What is left out changes no quantity by more than the target, on the whole grid; more than nothing is left out of half of the scenes.
+/// The effects that are left out change no quantity by more than the target, on the whole grid. In half of the scenes at least one effect is left
+/// out.
 #[test]
 fn what_is_neglected_changes_less_than_the_target() {
     let h = ball();
@@ -199,7 +201,7 @@ fn what_is_neglected_changes_less_than_the_target() {
     assert!(left_out >= 6, "{left_out}");
 }
 
-/// The peak of a cone grows with the elements: small grids do not reach a limit that the whole grid does.
+/// The peak of a cone grows with the number of elements: small grids do not reach a limit that the whole grid reaches.
 #[test]
 fn a_pressure_limit_stays() {
     let h: Vec<f64> = ball().iter().map(|h| h.sqrt()).collect();
@@ -214,7 +216,7 @@ fn a_pressure_limit_stays() {
 
 #[test]
 fn a_period_that_does_not_matter_is_negligible() {
-    // Contact on a hundredth of the period in each direction.
+    // The contact is a hundredth of the grid long in each direction.
     let h: Vec<f64> = ball().iter().map(|h| 400.0 * h).collect();
     let scene = Scene { period: Some(Period { x: false, y: true }), ..plain(&h) };
     let verdicts =
@@ -227,8 +229,8 @@ fn a_period_that_does_not_matter_is_negligible() {
     assert_eq!((stop, rows[0].verdict), (Outcome::Converged, Verdict::Needed), "{rows:?}");
 }
 
-/// A law and a third body that yields are rows of their own: needed where slips are fast and where tractions pass the yield limit, and their changes are those
-/// of the whole grid.
+/// A law and a plastic layer have their own rows. They are needed where slips are fast and where tractions exceed the yield limit, and their changes
+/// are those of the whole grid.
 #[test]
 fn laws_of_friction_and_layers_that_yield_are_in_the_bill() {
     let h = ball();
@@ -267,7 +269,7 @@ fn laws_of_friction_and_layers_that_yield_are_in_the_bill() {
     }
 }
 
-/// E* is 65000: a work of 1 carries a pull of 1.5 pi w R = 236 beside a load of 1100, a work of 1e-7 nothing that 1 % shows.
+/// E* is 65000. A work of 1 holds a pull of 1.5 pi w R = 236, compared with a load of 1100. The effect of a work of 1e-7 is below 1 %.
 #[test]
 fn adhesion_is_needed_where_it_is_strong() {
     let h = ball();
@@ -292,7 +294,7 @@ fn adhesion_is_needed_where_it_is_strong() {
     assert!(change > 0.05, "without attraction the force of an approach is larger: {change}");
     let weak = bill(&sticky(1e-7, 0.005), 1e-2, &WANTED);
     assert!(weak.iter().all(|row| row.verdict == Verdict::Negligible), "{weak:?}");
-    // It makes a result of another kind, which stays.
+    // Adhesion has its own kind of result, so that it is not left out.
     let neglected = Neglected::of(&sticky(1e-7, 0.005), &Options::default(), 1e-2, None).expect("a scene");
     assert!(neglected.omissions.is_empty());
     let refused = effects_bill(&sticky(1.0, 0.0), &Options::default(), &BillOptions::new(0.1), &WANTED, None);

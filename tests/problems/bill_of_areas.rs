@@ -1,4 +1,4 @@
-//! What small grids do not show of an area: no element changes sides there, and yet it is off on the grid of the scene.
+//! An area whose change small grids do not show: there no element enters or leaves the contact, but on the scene's grid some do.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Each, Friction, Layer, Load, Motion, Prescribed, Scene};
@@ -7,8 +7,8 @@ use contact_normal::solver::{effects_bill, quantities, BillOptions, Omission, Op
 const M: usize = 256;
 const TARGET: f64 = 1e-2;
 
-/// Small grids say that the layer changes nothing, to the last bit; it changes the area by 2.7 %. In more seconds than these the bill takes the grid of the scene, in
-/// fewer it knows one grid alone: neither of them says negligible.
+/// On small grids the layer changes nothing, to the last bit; on the scene's grid it changes the area by 2.7 %. With more seconds the bill reaches
+/// the scene's grid, with fewer it solves one grid only: neither verdict is negligible.
 #[test]
 fn an_area_that_no_element_of_small_grids_changes_is_not_decided() {
     let grid = Grid::new(M, M, 1.0 / M as f64, 1.0 / M as f64).expect("a grid");
@@ -28,7 +28,7 @@ fn an_area_that_no_element_of_small_grids_changes_is_not_decided() {
         let (_, rows) = quantities(scene, &Options::default(), &wanted, 0, None).expect("a solvable scene");
         rows[0].value.expect("an area")
     };
-    // Friction changes no pressure by more than a thousandth here.
+    // Here friction changes pressures by at most a thousandth.
     let (with, without) = (area(&Scene { friction: None, ..scene.clone() }), area(&plain));
     assert!((without / with - 1.0).abs() > 2.0 * TARGET, "{with} {without}");
     assert_ne!(of_layer.verdict, Verdict::Negligible, "{of_layer:?}");

@@ -1,4 +1,4 @@
-//! Bills of effects whose last grid is not solved without an effect, or not with all: no change of a coarser grid takes its place.
+//! Bills of effects whose last grid is not solved with all effects, or without one: the change of a coarser grid does not replace its change.
 
 use contact_normal::grid::Grid;
 use contact_normal::progress::Progress;
@@ -10,7 +10,7 @@ use contact_normal::solver::{
 const M: usize = 64;
 const D: f64 = 0.1;
 
-/// A ball of radius 100 with roughness of 0.02 between neighbours. Smaller grids see less of it: its force rises from grid to grid.
+/// A ball of radius 100 with a roughness of 0.02 between neighbours. Smaller grids average it: the force rises from grid to grid.
 fn rough_ball() -> Vec<f64> {
     let at = |k: usize| (k as f64 - 0.5 * (M as f64 - 1.0)) * D;
     let rough = |i: usize| 0.02 * ((i * 7919) % 1009) as f64 / 1009.0;
@@ -23,13 +23,13 @@ fn with_layer(h: &[f64]) -> Scene<'_> {
     Scene { layer: Some(Layer(Each::Uniform(2e-6))), ..plain }
 }
 
-/// A bill on all grids up to the scene's.
+/// A bill on all grids up to that of the scene.
 fn asked(target: f64) -> BillOptions {
     BillOptions { max_seconds: 1e3, ..BillOptions::new(target) }
 }
 
-/// Ten cycles solve 64 x 64 elements with the layer, but not without it. They solve 16 x 16 elements both ways: that change is 759.7 beside a force of 13235.
-/// On 64 x 64 elements the change is 1843.
+/// Ten cycles solve 64 x 64 elements with the layer, but not without it. They solve 16 x 16 elements in both cases, with a change of 759.7 and a
+/// force of 13235. On 64 x 64 elements the change is 1843.
 #[test]
 fn a_change_of_a_coarser_grid_is_no_change_of_the_last() {
     let h = rough_ball();
@@ -52,7 +52,7 @@ fn a_change_of_a_coarser_grid_is_no_change_of_the_last() {
     }
 }
 
-/// A bill that is cancelled on the scene's grid, after this was solved with the layer, is that of the grid of half the elements.
+/// A bill that is cancelled on the scene's grid, after the solve with the layer, is that of the grid with half the elements.
 #[test]
 fn a_cancelled_bill_is_that_of_the_grid_before() {
     let h = rough_ball();
@@ -75,10 +75,10 @@ fn a_cancelled_bill_is_that_of_the_grid_before() {
         rows[0].value.expect("a force")
     };
     let (with, without) = (on_half(&scene), on_half(&Omission::Layer.leave_out(&scene)));
-    // Of solves to 1e-6.
+    // Both solves have a tolerance of 1e-6.
     assert!((rows[0].value.expect("a force") / with - 1.0).abs() < 1e-4, "{rows:?} {with}");
     assert!((rows[0].change.expect("a change") - (without - with)).abs() < 1e-4 * with, "{rows:?} {without}");
-    // Bytes are predicted for the grid of the scene, from four times fewer elements here.
+    // Bytes are predicted for the scene's grid, here from a grid with a quarter of the elements.
     let (_, whole) = effects_bill(&scene, &options, &asked(1e-2), &wanted, None).expect("a bill");
     let ratio = rows[0].bytes[0] / whole[0].bytes[0];
     assert!((0.6..1.6).contains(&ratio), "{ratio}");

@@ -1,4 +1,4 @@
-//! Values that are exactly 0, as nothing touches: quantities, price lists and searches agree on them. And price lists of what is not solved.
+//! Values that are exactly 0 without contact: quantities, price lists and searches agree on them. Also price lists of scenes that are not solved.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Each, Friction, Layer, Load, Scene};
@@ -27,7 +27,7 @@ fn ball() -> Vec<f64> {
     (0..M * M).map(|i| (at(i % M).powi(2) + at(i / M).powi(2)) / 20.0).collect()
 }
 
-/// The ball is a tenth above the plate.
+/// The ball is 0.1 above the plate.
 fn apart(h: &[f64]) -> Scene<'_> {
     Scene { friction: Some(Friction::new(0.3)), ..Scene::new(grid(), h, BODIES, Load::Approach(-0.1)) }
 }
@@ -45,7 +45,7 @@ fn values_of_bodies_apart_are_exact() {
     for row in rows {
         assert_eq!((row.value, row.error, row.lack), (Some(0.0), Some(0.0), None), "{row:?}");
     }
-    // The mean gap is no such value: its error follows from the grids.
+    // The mean gap is not exact: its error follows from the grids.
     let (_, rows) = quantities(&apart(&h), &Options::default(), &[Quantity::MeanGap], 1, None).expect("rows");
     assert_eq!((rows[0].error, rows[0].lack), (None, Some(Lack::OneGrid)));
     assert!(rows[1].error.is_some_and(|error| error > 0.0), "{rows:?}");
@@ -58,7 +58,7 @@ fn spike() -> Vec<f64> {
     h
 }
 
-/// The grid of half the elements has a quarter of the spike, which does not touch: 0 is no exact value there.
+/// On the grid of half the elements the spike has a quarter of its depth and does not touch: 0 is no exact value there.
 #[test]
 fn a_grid_that_misses_the_contact_has_no_error() {
     let h = spike();
@@ -72,7 +72,8 @@ fn a_grid_that_misses_the_contact_has_no_error() {
     assert!(rows[2..].iter().all(|row| row.value.is_some_and(|value| value > 0.0)), "{rows:?}");
 }
 
-/// The bill of the spike is that of the scene's grid. One element of side d has `u = 4 ln(1 + sqrt 2) p d/(pi E*)` in its middle, 0.0786 p; the layer adds 0.08 p.
+/// The bill of the spike is that of the scene's grid. An element of side d has `u = 4 ln(1 + sqrt 2) p d/(pi E*)` at its centre, 0.0786 p; the layer
+/// adds 0.08 p.
 #[test]
 fn a_bill_counts_no_grid_that_misses_the_contact() {
     let h = spike();
@@ -86,7 +87,7 @@ fn a_bill_counts_no_grid_that_misses_the_contact() {
     assert!((change / (0.08 / own) - 1.0).abs() < 1e-3, "{change}");
 }
 
-/// A search has no contact on three grids, and the list names the grid of the scene.
+/// A search finds no contact on three grids, and the list names the scene's grid.
 #[test]
 fn prices_of_bodies_apart_are_those_of_their_grid() {
     let h = ball();
@@ -101,7 +102,7 @@ fn prices_of_bodies_apart_are_those_of_their_grid() {
             assert!(row.seconds > Some(0.0) && row.bytes > 0, "{quantity:?}: {row:?}");
         }
     }
-    // Limits of the caller's hold, and a quantity without a value is not to be had.
+    // The caller's limits hold, and a quantity without a value has an obstacle.
     let wanted = (Quantity::Force, &[1e-2][..]);
     let accuracy = Accuracy { max_elements: 100, ..Accuracy::new(0.1) };
     let (_, rows) = cost_of_accuracy(&scene, &Options::default(), &accuracy, wanted, None, None).expect("a list");
@@ -110,7 +111,7 @@ fn prices_of_bodies_apart_are_those_of_their_grid() {
     assert_eq!((rows[0].obstacle, rows[0].grid), (Some(Obstacle::Singular), None), "{rows:?}");
 }
 
-/// One iteration solves no grid.
+/// With one iteration no grid is solved.
 #[test]
 fn a_price_list_without_a_solved_grid_says_so() {
     let h = ball();

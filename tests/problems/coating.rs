@@ -1,4 +1,4 @@
-//! Coatings: the transfer function and the coefficients, Hertz contact of coated bodies, preconditioners, effects that combine.
+//! Coatings: the transfer function and the coefficients, Hertz contact of coated bodies, preconditioners, combined effects.
 
 use std::f64::consts::PI;
 
@@ -19,14 +19,14 @@ use crate::support::{assert_conditions, run};
 
 const RATIOS: [f64; 9] = [1e-4, 0.01, 0.1, 0.5, 0.999, 2.0, 10.0, 100.0, 1e4];
 
-/// One coated body on a rigid one, with (1 - nu)/(2 pi G) = 1 at its surface.
+/// A coated body on a rigid one, with (1 - nu)/(2 pi G) = 1 at its surface.
 pub fn coated(mu: f64, nu: [f64; 2], t: f64, grid: &Grid) -> Coated {
     let rigid = CoatedBody { compliance: 0.0, layer: None };
     let layer = CoatedBody { compliance: 1.0, layer: Some((t, radial(mu, nu))) };
     Coated::new([layer, rigid], grid).unwrap()
 }
 
-/// Bits of the reference for B: at s = 1e-6 and G1/G2 = 1e6 some 100 of them cancel.
+/// The bits of the reference for B: some 100 of them cancel at s = 1e-6 and G1/G2 = 1e6.
 const BITS: usize = 320;
 const RM: RoundingMode = RoundingMode::ToEven;
 
@@ -71,7 +71,7 @@ fn the_transfer_function_has_all_digits() {
     println!("largest error of B: {worst:e}");
 }
 
-/// Nine elements are one that is three times as long and wide: sums that know nothing of how either was computed.
+/// The coefficients of 3 x 3 elements add up to that of one element three times as long and wide, however they were computed.
 #[test]
 fn coefficients_add_up_to_those_of_larger_elements() {
     let mut worst: f64 = 0.0;
@@ -100,7 +100,7 @@ fn coefficients_add_up_to_those_of_larger_elements() {
     println!("largest error of nine elements: {worst:e}");
 }
 
-/// Nodes and weights of Gauss and Legendre's rule on [0, 1], by Newton's method on the polynomial.
+/// Nodes and weights of the Gauss-Legendre rule on [0, 1], by Newton's method on the polynomial.
 fn gauss(n: usize) -> Vec<(f64, f64)> {
     let rule = |k: usize| {
         let mut x = (PI * (k as f64 + 0.75) / (n as f64 + 0.5)).cos();
@@ -118,8 +118,8 @@ fn gauss(n: usize) -> Vec<(f64, f64)> {
     (0..n).map(rule).collect()
 }
 
-/// The coefficient at an offset in x by its definition: Hankel's integral `F(rho) = integral of (B(s) - 1) J0(s rho) ds` at each of
-/// `n x n` Gauss points of each of `parts x parts` parts of the element, and Love's integral of 1/r.
+/// The coefficient at an offset in x by its definition: Hankel's integral `F(rho) = integral of (B(s) - 1) J0(s rho) ds` at each of the `n x n` Gauss
+/// points of each of `parts x parts` parts of the element, plus Love's integral of 1/r.
 pub fn by_hankel_integrals(
     mu: f64,
     nu: [f64; 2],
@@ -130,7 +130,7 @@ pub fn by_hankel_integrals(
 ) -> f64 {
     let transfer = Transfer::new(mu, nu);
     let farthest = (kx as f64 + 1.0) * dx.max(dy) / t;
-    // Panels grow from the length of a stiff plate to a part of a wave; B - 1 is 1e-21 and less beyond 25.
+    // Panels grow from the length of a stiff plate to a part of a wave; B - 1 is at most 1e-21 beyond 25.
     let (mut s, mut width, mut waves) = (0.0, 0.02 / mu.max(1.0), Vec::new());
     while s < 25.0 {
         for (x, weight) in gauss(12) {
@@ -145,7 +145,7 @@ pub fn by_hankel_integrals(
         .flat_map(|k| gauss(n).into_iter().map(move |(x, w)| ((k as f64 + x) / parts as f64 - 0.5, w / parts as f64)))
         .collect();
     for (x, wx) in &points {
-        // Even in y.
+        // The integrand is even in y.
         for (y, wy) in points.iter().filter(|(y, _)| *y > 0.0) {
             let rho = ((kx as f64 + x) * dx).hypot(y * dy) / t;
             let f: f64 = waves.iter().map(|(s, part)| part * libm::j0(s * rho)).sum();
@@ -155,7 +155,7 @@ pub fn by_hankel_integrals(
     HalfSpace::new(dx, dy, PI).at(kx as i64, 0) + dx * dy / t * sum
 }
 
-/// A coefficient is far below the two parts of its definition where the coating is soft: these lose 1/B(0) of their digits.
+/// For a soft coating a coefficient is far smaller than the two parts of its definition: 1/B(0) of their digits cancel.
 #[test]
 fn coefficients_are_direct_hankel_integrals() {
     let mut worst: f64 = 0.0;
@@ -184,7 +184,7 @@ fn coefficients_are_direct_hankel_integrals() {
 fn thin_thick_and_equal_coatings_are_what_they_should_be() {
     let grid = Grid::new(40, 40, 1.0, 1.0).unwrap();
     let love = HalfSpace::new(1.0, 1.0, PI);
-    // Thin: the substrate, and the compliance B1 of a layer on the diagonal; what is left is of second order.
+    // A thin coating is the substrate plus the compliance B1 of a layer on the diagonal; the error is of second order.
     let (mu, t) = (0.01, 1e-3);
     let transfer = Transfer::new(mu, [0.3, 0.3]);
     let thin = transfer.substrate * love.at(0, 0) + 2.0 * PI * transfer.taylor()[1] * t;
@@ -203,7 +203,7 @@ fn thin_thick_and_equal_coatings_are_what_they_should_be() {
     }
 }
 
-/// t/aH, a/aH, p0/pH.
+/// A column of the table: t/aH, a/aH, p0/pH.
 type Column = (f64, f64, f64);
 
 /// A rigid ball on a coated body: `a/aH` and `p0/pH` of an axisymmetric solution by Hankel transforms, without a grid, nu = 0.3; aH and pH
@@ -217,7 +217,7 @@ const HERTZ: [(f64, [Column; 4]); 6] = [
     (10.0, [(0.25, 0.75150, 1.14534), (0.5, 0.574649, 2.669873), (1.0, 0.482055, 4.282251), (2.0, 0.466579, 4.592785)]),
 ];
 
-/// E* = 1 of the substrate and R = 1: a force of 4/3 gives aH = 1 and pH = 2/pi.
+/// The substrate has E* = 1, and R = 1: a force of 4/3 gives aH = 1 and pH = 2/pi.
 fn ball(mu: f64, t: f64, radius: f64, elements: usize) -> (Grid, Vec<f64>, Bodies, Coating) {
     let m = 2 * (elements + elements / 5) + 1;
     let d = radius / elements as f64;
@@ -236,9 +236,9 @@ fn a_ball_on_a_coated_body_has_the_pressures_of_the_axisymmetric_solution() {
             let (grid, h, bodies, coating) = ball(mu, t, radius, 40);
             let scene = Scene { coating: Some(coating), ..Scene::new(grid, &h, bodies, Load::Force(4.0 / 3.0)) };
             let (solver, report) = run(&scene, &Options { tolerance: 1e-9, ..Options::default() });
-            // Of stiff thin coatings the largest pressure is not in the middle.
+            // With stiff thin coatings the largest pressure is not in the middle.
             let error = (solver.state().p[grid.len() / 2] / (pressure * 2.0 / PI) - 1.0).abs();
-            // Second order in the elements to the radius: 5e-5 at 40, and the digits of the table.
+            // Of second order in the elements per radius: 5e-5 for 40, plus the digits of the table.
             assert!(error <= 1e-4, "mu {mu} t {t}: p0 off by {error:e}");
             let found = (report.measures.contact_area / PI).sqrt();
             assert!((found - radius).abs() <= 0.5 * grid.dx, "mu {mu} t {t}: a {found} for {radius}");
@@ -248,7 +248,7 @@ fn a_ball_on_a_coated_body_has_the_pressures_of_the_axisymmetric_solution() {
     println!("largest error of p0: {worst:e}");
 }
 
-/// Steps of conjugate gradients on a fixed disc of 80 elements across, to 1e-8 of the right-hand side.
+/// The number of steps of conjugate gradients on a fixed disc of 80 elements across, to 1e-8 of the right-hand side.
 fn steps(mu: f64, t: f64, rough: bool) -> usize {
     let m = 128;
     let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
@@ -293,7 +293,7 @@ fn steps(mu: f64, t: f64, rough: bool) -> usize {
 
 #[test]
 fn preconditioners_are_positive_and_as_good_as_they_were_measured() {
-    // Other roundings of the coefficients, by half a unit in the last place, change a count by up to two: (100, 0.01, rough) takes 32 or 34.
+    // Changes of the coefficients by half a unit in the last place change a count by up to two.
     #[rustfmt::skip]
     let table = [
         (0.01, 0.01, 5, 7), (0.01, 0.1, 6, 7), (0.01, 1.0, 8, 12), (0.01, 3.0, 8, 12),
@@ -307,10 +307,10 @@ fn preconditioners_are_positive_and_as_good_as_they_were_measured() {
     }
 }
 
-/// `G1/G2`, `(nu1, nu2)`, and `(rho, F)`.
+/// `G1/G2`, `(nu1, nu2)`, and pairs `(rho, F)`.
 type Radial = (f64, [f64; 2], &'static [(f64, f64)]);
 
-/// F_1 by 30 digits (mpmath: composite quadrature of `(B - 1) J0`).
+/// F_1 to 30 digits (mpmath: composite quadrature of `(B - 1) J0`).
 #[rustfmt::skip]
 const RADIAL: [Radial; 4] = [
     (1e-4, [0.3, 0.3], &[
@@ -340,13 +340,13 @@ fn radial_functions_have_fourteen_digits() {
     for (mu, ratios, values) in RADIAL {
         for &(rho, exact) in values {
             let found = radial(mu, ratios).f(rho, Base::Layer);
-            // Sums of some 500 terms of order 1.
+            // The round-off of sums of some 500 terms of order 1.
             assert!((found - exact).abs() <= 2e-14 * exact.abs().max(1.0), "mu {mu} rho {rho}: {found} for {exact}");
         }
     }
 }
 
-/// A surface with several contact areas, one place without a surface.
+/// A surface with several contact areas, and one place without a surface.
 fn bumps(m: usize, d: f64) -> (Grid, Vec<f64>) {
     let grid = Grid::new(m, m, d, d).unwrap();
     let mut h: Vec<f64> = (0..m * m)
@@ -417,7 +417,7 @@ fn no_coating_in_effect_is_the_plain_scene() {
         let (with, _) = run(&Scene { coating: Some(Coating { layers }), ..plain.clone() }, &Options::default());
         assert_eq!(with.state().p, without.state().p);
     }
-    // So thick that it is the body.
+    // A coating so thick that it is a half-space.
     let thick = Coating { layers: [layer(1e15, 1.0, 0.3), None] };
     let bodies = Bodies { shear_modulus: [3.0, 2.0], poisson_ratio: [0.1, 0.25] };
     let scene = Scene { coating: Some(thick), bodies, ..plain.clone() };
@@ -429,7 +429,7 @@ fn no_coating_in_effect_is_the_plain_scene() {
     }
 }
 
-/// A wave of pressure, constant on elements, displaces by the sum over its aliases.
+/// The displacement by a wave of pressures that are constant on elements is a sum over the aliases of the wave.
 #[test]
 fn periodic_coefficients_have_the_transform_of_the_layer() {
     let grid = Grid::new(12, 9, 0.3, 0.5).unwrap();
@@ -446,7 +446,7 @@ fn periodic_coefficients_have_the_transform_of_the_layer() {
                 * (2.0 * PI * (i * kx) as f64 / 12.0).cos()
                 * (2.0 * PI * (j * ky) as f64 / 9.0).cos();
         }
-        // Beyond n aliases are 1/n^2 of the sum: twice as many leave a quarter.
+        // The aliases beyond n are 1/n^2 of the sum: with twice as many a quarter of the error remains.
         let sum = |n: i64| -> f64 {
             let aliases = (-n..=n).flat_map(|a| (-n..=n).map(move |b| (a, b)));
             aliases

@@ -1,4 +1,4 @@
-//! Costs that are counted, not timed: the grids of a bill, and the products of price lists with friction.
+//! Costs that are counted and not timed: the grids of a bill, and the products of price lists with friction.
 
 use std::time::Duration;
 
@@ -23,7 +23,7 @@ fn paraboloid(grid: &Grid, h: &mut [f64]) {
     }
 }
 
-/// On a machine that takes 40 ms longer for each iteration the bill is the same, to the last bit.
+/// On a machine that takes 40 ms longer for each iteration the bill has the same bits.
 #[test]
 fn a_bill_is_the_same_on_a_busy_machine() {
     let grid = grid(64);
@@ -48,8 +48,8 @@ fn a_bill_is_the_same_on_a_busy_machine() {
     }
 }
 
-/// A largest stress is found with its depth: a bill of both chooses the grids of a bill of one, and has its values to the last bit. 128 x 128 elements:
-/// with two stresses 64 x 64 would be the last grid.
+/// A largest stress comes with its depth: a bill of both chooses the grids of a bill of one, and has its values to the last bit. With two different
+/// stresses the last grid would be 64 x 64 instead of 128 x 128.
 #[test]
 fn the_depth_of_a_largest_stress_costs_nothing_beside_it() {
     let grid = grid(128);
@@ -66,10 +66,10 @@ fn the_depth_of_a_largest_stress_costs_nothing_beside_it() {
     assert_eq!((one.len(), both.len()), (1, 1));
     assert_eq!((one[0].value, one[0].change, one[0].error), (both[0].value, both[0].change, both[0].error));
     let two = of(&[Quantity::MaxVonMises, Quantity::MaxShear]);
-    assert_ne!(one[0].value, two[0].value, "a second stress takes a grid");
+    assert_ne!(one[0].value, two[0].value, "a second stress ends on a coarser grid");
 }
 
-/// A loose target takes half of the products of a tight one, or less: of the tangential problem, whose iterations tell none, too.
+/// A loose target takes at most half of the products of a tight one. This includes the tangential problem, whose iterations are not reported.
 #[test]
 fn products_with_friction_are_those_of_each_target() {
     let (mut rows, mut near) = (0, 0);
@@ -97,7 +97,7 @@ fn products_with_friction_are_those_of_each_target() {
                 let report = solve(&scene, &Options { tolerance: price.tolerance, ..options }).expect("a solve").2;
                 let counted = report.count.work_units + report.friction.expect("friction").products;
                 let ratio = price.work_units / counted;
-                // They grow with the elements, which coarser samples tell in part.
+                // The products grow with the number of elements, which coarser samples show in part.
                 assert!((0.6..1.6).contains(&ratio), "{:?}, {:?}, {}: {ratio}", bodies, friction.motion, price.target);
                 (rows, near) = (rows + 1, near + usize::from((1.0 / 1.3..1.3).contains(&ratio)));
             }

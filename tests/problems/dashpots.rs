@@ -1,4 +1,4 @@
-//! Bodies that relax by their dashpots, integrated in small steps, and paths of loads whose steps are certified by them.
+//! Viscoelastic bodies by the equations of their dashpots, integrated in small steps, and paths of loads whose steps they certify.
 
 use contact_normal::scene::Visco;
 use contact_normal::scene::{Branches, Load, Scene};
@@ -11,7 +11,7 @@ pub const MX: usize = 18;
 pub const MY: usize = 14;
 pub const SIDE: f64 = 0.08;
 
-/// A body by the equations of its dashpots, `t dq/dt = u - q`, integrated by Runge and Kutta's method in many small steps.
+/// A body by the equations of its dashpots, `t dq/dt = u - q`, integrated by a Runge-Kutta method in many small steps.
 struct Dashpots {
     share: f64,
     r: Vec<f64>,
@@ -33,7 +33,7 @@ impl Dashpots {
         w + self.r.iter().zip(q).map(|(r, q)| r * q).sum::<f64>()
     }
 
-    /// q after a step in which `u(part, q)` displaces.
+    /// q after a step with the displacement `u(part, q)`.
     fn integrate(&self, q: &[f64], dt: f64, u: impl Fn(f64, &[f64]) -> f64) -> Vec<f64> {
         let (mut q, h) = (q.to_vec(), dt / PARTS as f64);
         let slope = |s: f64, q: &[f64]| -> Vec<f64> {
@@ -54,14 +54,14 @@ impl Dashpots {
         q
     }
 
-    /// A step that ends with this A p; adds what it displaces.
+    /// A step that ends with this A p; adds the displacement of the body.
     fn step(&mut self, dt: f64, form: Form, product: &[f64], displacement: &mut [f64]) {
         for (i, product) in product.iter().enumerate() {
             let (q, w0, w) = (&self.q[i], self.w[i], self.share * product);
             let after = match form {
                 _ if dt == 0.0 => q.clone(),
                 Form::Creep => self.integrate(q, dt, |s, q| self.u_of(q, w0 + s * (w - w0))),
-                // q after is linear in u after, u = w + r.q.
+                // The new q is linear in the new u = w + r.q.
                 Form::Relaxation => {
                     let u0 = self.u_of(q, w0);
                     let with = |u: f64| self.integrate(q, dt, |s, _| u0 + s * (u - u0));
@@ -84,7 +84,7 @@ impl Dashpots {
     }
 }
 
-/// The conditions of a step: residuals to the tolerance, and to that of the integration. Returns the force.
+/// Asserts the conditions of a step, to the tolerance and to that of the integration. Returns the force.
 fn assert_step(what: &str, h: &[f64], u: &[f64], solver: &Solver, limit: f64) -> f64 {
     let state = solver.state();
     let (mut residual, mut distance, mut violation, mut deepest) = (0.0, 0.0, 0.0_f64, 0.0_f64);
@@ -99,7 +99,7 @@ fn assert_step(what: &str, h: &[f64], u: &[f64], solver: &Solver, limit: f64) ->
         } else {
             violation = violation.max(-e);
         }
-        // What is reported is what the test integrates: 300 parts leave 1e-9 of a step of five times.
+        // The reported u is the integrated one: with 300 parts the error is 1e-9 for a step of five relaxation times.
         assert!((state.u[i] - u[i]).abs() <= 1e-7 * (1e-3 + u[i].abs()), "{what}: {} for {}", state.u[i], u[i]);
     }
     assert!(residual.sqrt() <= 2e-6 * distance.sqrt(), "{what}: {residual:e} {distance:e}");
@@ -107,7 +107,7 @@ fn assert_step(what: &str, h: &[f64], u: &[f64], solver: &Solver, limit: f64) ->
     state.p.iter().sum::<f64>() * SIDE * SIDE
 }
 
-/// A path of a scene, step by step; `shares` of the compliance at once.
+/// Solves and checks a path of a scene, step by step; `shares` are those of the bodies in the instantaneous compliance.
 pub fn assert_path(what: &str, scene: &Scene<'_>, shares: [f64; 2], path: &[(f64, Load)], options: &Options) {
     let visco = scene.visco.expect("bodies that relax");
     let coated = |b: usize| scene.coating.and_then(|coating| coating.layers[b]).map(|layer| layer.shear_modulus);

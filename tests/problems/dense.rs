@@ -1,4 +1,4 @@
-//! `u = A p` by direct summation: the naive twin of `Operator` for every effect, the oracle of its tests.
+//! `u = A p` by direct summation: the naive twin of `Operator` for every effect, and the oracle of its tests.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::Coefficients;

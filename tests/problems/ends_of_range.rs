@@ -1,4 +1,4 @@
-//! Scenes at the ends of what numbers hold: areas of elements, loads of stresses, limits that are next to nothing, one cycle.
+//! Scenes at the ends of the range of numbers: areas of elements, loads of stresses, tiny limits. Also solves of one cycle.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -10,7 +10,7 @@ use contact_normal::threads::Threads;
 
 const BODIES: Bodies = Bodies { shear_modulus: [1.0, 1.0], poisson_ratio: [0.3, 0.3] };
 
-/// Coefficients that are given do not depend on the sizes of elements: a force of 0 or infinity was the answer.
+/// Given coefficients do not depend on the sizes of elements. Without a check the force would be 0 or infinite.
 #[test]
 fn areas_and_forces_beyond_the_range_of_numbers_are_refused() {
     let offset = |k: usize| ((k % 8) as f64 - 4.0).hypot((k / 8) as f64 - 4.0);
@@ -34,7 +34,7 @@ fn areas_and_forces_beyond_the_range_of_numbers_are_refused() {
     }
 }
 
-/// A single element with two periods displaces nothing, but has an area.
+/// A single element with two periods has no displacement, but it has an area.
 #[test]
 fn the_area_of_a_single_element_with_two_periods_is_in_range() {
     for (side, is_refused) in [(1e-160, true), (1.0, false), (1e150, true)] {
@@ -45,7 +45,7 @@ fn the_area_of_a_single_element_with_two_periods_is_in_range() {
     }
 }
 
-/// A load that takes stresses out of the range of numbers had stresses that are infinite or no numbers, with status OK.
+/// A load whose stresses overflow is refused, so that no stress is infinite or NaN with status OK.
 #[test]
 fn loads_whose_stresses_overflow_are_refused() {
     let body = Body { grid: Grid::new(8, 8, 1.0, 1.0).expect("a grid"), poisson_ratio: 0.3, periodic: false };
@@ -67,7 +67,7 @@ fn loads_whose_stresses_overflow_are_refused() {
     }
 }
 
-/// A stop that comes with the last depth, or the last points, leaves nothing out.
+/// A stop at the last depth, or at the last points, omits nothing.
 #[test]
 fn a_stop_with_the_last_depth_is_no_stop() {
     let body = Body { grid: Grid::new(4, 4, 1.0, 1.0).expect("a grid"), poisson_ratio: 0.3, periodic: false };
@@ -84,7 +84,7 @@ fn a_stop_with_the_last_depth_is_no_stop() {
     assert!(done.expect("stresses"));
 }
 
-/// e = h - approach + A p of two elements side by side that repeat themselves: only the difference of both pressures displaces them.
+/// e = h - approach + A p for two elements with two periods: displacements depend on the difference of both pressures only.
 #[test]
 fn limits_next_to_nothing_are_reached() {
     let grid = Grid::new(2, 1, 1.0, 1.0).expect("a grid");
@@ -94,13 +94,13 @@ fn limits_next_to_nothing_are_reached() {
             let limits = if h[0] > h[1] { [small, 1e3] } else { [1e3, small] };
             let pressure_limit = Some(PressureLimit(Each::PerElement(&limits)));
             let scene = Scene { period, pressure_limit, ..Scene::new(grid, &h, BODIES, Load::Approach(0.43)) };
-            // PROJECTED_CG alone stagnates where a limit is beyond the range of single precision.
+            // PROJECTED_CG alone stagnates if a limit is beyond the range of single precision.
             let alone = if small > 1e-38 { Method::ProjectedCg } else { Method::Auto };
             for method in [Method::Auto, alone, Method::Norm] {
                 let (solver, outcome, _) = solve(&scene, &Options { method, ..Options::default() }).expect("a scene");
                 let state = solver.state();
                 let low = usize::from(h[0] < h[1]);
-                // The one at its limit would penetrate without: .43 exceeds the mean of both distances.
+                // Without its limit the element would penetrate: .43 exceeds the mean of both distances.
                 assert_eq!(outcome, Outcome::Converged, "{method:?} {small} {:?}", state.p);
                 assert!(state.p[low] == small && state.at_limit[low], "{method:?} {small} {:?}", state.p);
             }
@@ -108,7 +108,7 @@ fn limits_next_to_nothing_are_reached() {
     }
 }
 
-/// All of the contact at its limit, found by the only cycle that may be done: the conditions hold.
+/// The whole contact is at its limit after the only cycle, and the conditions hold.
 #[test]
 fn a_result_that_holds_is_ok_whatever_ended_the_cycles() {
     for (mx, my) in [(1, 1), (17, 5)] {
@@ -125,7 +125,7 @@ fn a_result_that_holds_is_ok_whatever_ended_the_cycles() {
     }
 }
 
-/// With a single cycle AUTO does that of its first method.
+/// With a single cycle AUTO makes that of its first method.
 #[test]
 fn the_only_cycle_goes_to_the_first_method() {
     let grid = Grid::new(64, 64, 0.05, 0.05).expect("a grid");
@@ -139,7 +139,7 @@ fn the_only_cycle_goes_to_the_first_method() {
     assert_eq!(residual(Method::Auto), residual(Method::ProjectedCg));
 }
 
-/// Elements of a micrometre, in metres, are solved in other units: of a solve with a limit nothing is left for the next one without.
+/// Elements of a micrometre, in metres, are solved in other units. A solve with a limit must not change the next one without.
 #[test]
 fn a_limit_of_the_solve_before_changes_not_a_bit() {
     let grid = Grid::new(64, 64, 1e-6, 1e-6).expect("a grid");

@@ -1,4 +1,4 @@
-//! Estimated errors where the surface ends within the contact, between elements or with them: punches that are flat.
+//! Estimated errors with edges of the surface within the contact, between elements or on their edges: flat punches.
 //!
 //! A flat punch has `F = k E* d`. For a circle of radius a k is 2 a; a square of side L has `k = pi 0.36679 L`, the capacity of a square
 //! plate over 4 epsilon, known to five digits (Read, J. Comput. Phys. 133, 1997).
@@ -15,11 +15,11 @@ use crate::support::run;
 
 /// E* = 1.
 const UNIT: Bodies = Bodies { shear_modulus: [0.5, f64::INFINITY], poisson_ratio: [0.0, 0.0] };
-/// Of a square of side 1.
+/// k of a square of side 1.
 const SQUARE: f64 = PI * 0.36679;
 const HALF: f64 = 0.6;
 const APPROACH: f64 = 0.01;
-/// Sides of the grid, and how far the punch is off its middle.
+/// Sides of the grid, and offsets of the punch from its middle.
 const PLACES: [(f64, [f64; 2]); 3] = [(1.7, [0.0, 0.0]), (1.93, [0.011, -0.007]), (1.61, [-0.013, 0.003])];
 const SIZES: [usize; 6] = [16, 24, 32, 40, 64, 96];
 
@@ -27,7 +27,7 @@ fn estimating() -> Options {
     Options { tolerance: 1e-7, estimates: true, ..Options::default() }
 }
 
-/// A surface at the centres of m x m elements over a square.
+/// A surface at the centres of the elements, with an offset.
 fn at_centres(grid: &Grid, off: [f64; 2], h: &dyn Fn(f64, f64) -> f64) -> Vec<f64> {
     let place = |i: usize, k: usize| (i as f64 - 0.5 * (grid.mx - 1) as f64) * grid.dx + off[k];
     (0..grid.len()).map(|i| h(place(i % grid.mx, 0), place(i / grid.mx, 1))).collect()
@@ -100,7 +100,7 @@ fn an_accuracy_is_kept_by_a_punch_whose_edges_fall_between_elements() {
     }
 }
 
-/// The grid of each row has the accuracy of that row.
+/// The grid of each row has the accuracy of the row.
 #[test]
 fn price_lists_of_a_punch_whose_edges_fall_between_elements_name_grids_that_do() {
     let force = 2.0 * HALF * SQUARE * APPROACH;
@@ -118,7 +118,7 @@ fn price_lists_of_a_punch_whose_edges_fall_between_elements_name_grids_that_do()
         assert_eq!(stop, Outcome::Converged);
         for row in rows {
             let grid = row.grid.expect("a grid");
-            // The tolerance, a tenth of the target, counts beside what the grid leaves.
+            // The tolerance, a tenth of the target, adds to the error of the grid.
             assert!(
                 row.obstacle.is_none() && row.error.is_some_and(|error| error <= 1.1 * row.target),
                 "{n} {side}: {row:?}"
@@ -131,7 +131,7 @@ fn price_lists_of_a_punch_whose_edges_fall_between_elements_name_grids_that_do()
     }
 }
 
-/// Without a callback the elements that are given are the surface: their edges are exact, and take no finer grid.
+/// Without a callback the given elements are the surface: their edges are exact, and need no finer grid.
 #[test]
 fn edges_of_elements_that_are_given_are_exact() {
     let n = 16;
@@ -180,7 +180,7 @@ fn a_limit_that_is_not_reached_leaves_the_estimates() {
             (error.contact_area, plain.error.contact_area),
             (error.pressure, plain.error.pressure),
         ] {
-            // Other iterations: the tolerance apart.
+            // Iterations differ, and so do estimates by the tolerance.
             let [limited, plain] = [limited, plain].map(|error| error.expect("an estimate"));
             assert!((limited / plain - 1.0).abs() < 1e-3, "{limit:?}: {limited}, {plain} without");
         }
@@ -190,7 +190,7 @@ fn a_limit_that_is_not_reached_leaves_the_estimates() {
     assert!(report(&scene).error.force.is_none());
 }
 
-/// What jumps has an estimate of its own; a wave of few elements does not jump, whatever its length.
+/// Jumps have their own estimate. A wave of few elements is no jump, whatever its length.
 #[test]
 fn jumps_are_found_and_waves_are_not() {
     let m = 96;
@@ -209,7 +209,7 @@ fn jumps_are_found_and_waves_are_not() {
     assert!(step > 0.5, "{step}");
 }
 
-/// A ball on m x m elements by an approach, with two patches and a layer of the compliance `of(x, y)`.
+/// Presses a ball on m x m elements by an approach, with two patches and a layer of the compliance `of(x, y)`.
 fn with_coefficients(m: usize, factor: f64, of: &dyn Fn(f64, f64) -> f64) -> (Solver, Report) {
     const SIDE: f64 = 2.4;
     let grid = Grid::new(m, m, SIDE / m as f64, SIDE / m as f64).unwrap();
@@ -224,7 +224,8 @@ fn with_coefficients(m: usize, factor: f64, of: &dyn Fn(f64, f64) -> f64) -> (So
     run(&Scene { patches, layer, ..Scene::new(grid, &h, bodies, Load::Approach(0.12)) }, &estimating())
 }
 
-/// Pressures are singular where patches touch, and on the stiffer side of a jump of a layer. The force is that of grids whose error is of first order.
+/// Pressures are singular where patches meet, and on the stiffer side of a jump of a layer. The reference is extrapolated from grids with errors of
+/// first order.
 #[test]
 fn the_error_beside_jumps_of_the_coefficients_is_covered() {
     let halves = [(0.0, [0.0; 2]), (0.3, [0.0; 2]), (0.8, [0.0; 2])];
@@ -247,7 +248,7 @@ fn the_error_beside_jumps_of_the_coefficients_is_covered() {
     }
 }
 
-/// Compliances without a jump do not change the errors: slopes, and noise of few per cent.
+/// Compliances without a jump do not change the relative errors: slopes, and noise of a few per cent.
 #[test]
 fn compliances_that_do_not_jump_have_the_errors_of_one() {
     let noise = |x: f64, y: f64| 1.0 + 1e-9 * (1e3 * (3.0 * x + 5.0 * y)).sin();
@@ -272,7 +273,7 @@ fn compliances_that_do_not_jump_have_the_errors_of_one() {
     }
 }
 
-/// Before a step of the first cycle no pressure carries the force, and no error of the area follows from that of the force.
+/// Before a step of the first cycle the pressures do not carry the force, so that no error of the area follows from that of the force.
 #[test]
 fn errors_of_a_solve_that_is_cut_short_are_numbers() {
     let mut count = 0;

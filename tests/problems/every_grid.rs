@@ -1,5 +1,5 @@
-//! Every small grid is solved by every method, with the half-space's coefficients and with the same ones as a table: grids
-//! whose coarser ones have transforms that need more memory than the finest one's, single rows, odd counts, primes.
+//! Every small grid is solved by every method, with the half-space's coefficients and with the same ones as a table: grids whose coarser ones have
+//! larger transforms than the finest one, single rows, odd counts, primes.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, Table};

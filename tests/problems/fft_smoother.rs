@@ -1,4 +1,4 @@
-//! V-cycles with the FFT smoother converge on contact areas of every shape, to the pressures that NORM finds.
+//! V-cycles with the FFT smoother converge on contact areas of any shape, to the pressures of NORM.
 
 use super::dense;
 use crate::paper as case;
@@ -26,7 +26,7 @@ fn options(method: Method) -> Options {
     Options { method, cycle, tolerance: TOLERANCE, max_cycles: 200, ..Options::default() }
 }
 
-/// NORM, solved further than what is compared with it.
+/// NORM with a tighter tolerance than the compared solve.
 fn norm() -> Options {
     Options { method: Method::Norm, tolerance: 1e-2 * TOLERANCE, max_cycles: 50_000, ..Options::default() }
 }
@@ -39,10 +39,9 @@ fn on_contact(scene: &Scene<'_>, options: Options, contact: &[bool]) -> (Solver,
     (solver, stop, report)
 }
 
-/// The 2-norm of the difference of the pressures is at most the condition number of A times the relative residuals.
-/// The eigenvalues of A are inversely proportional to wave numbers, from one wave on the grid to half a wave per
-/// element: the condition number is about the larger number of elements in a row or column times the aspect ratio of
-/// the elements; twice that is allowed.
+/// The 2-norm of the difference of the pressures is at most the condition number of A times the relative residuals. The eigenvalues of A are
+/// inversely proportional to wave numbers, from one wave on the grid to half a wave per element. So the condition number is about the larger number
+/// of elements in a row or column times the aspect ratio of the elements; twice that is allowed.
 fn assert_same_pressures(a: &Solver, b: &Solver, what: &str) {
     let grid = a.state().grid;
     let aspect = (grid.dx / grid.dy).max(grid.dy / grid.dx);
@@ -70,7 +69,7 @@ fn the_linear_system_of_the_paper_takes_no_more_cycles_than_with_gauss_seidel() 
             fft.count.cycles,
             gauss_seidel.count.cycles
         );
-        // Three products a cycle, the fresh one that certifies, and the one of the start.
+        // Three products a cycle, that of the certificate, and that of the start.
         assert!(fft.count.matrix_products <= 3 * fft.count.cycles + 2, "{m}: {} products", fft.count.matrix_products);
     }
 }
@@ -122,7 +121,7 @@ fn the_rough_surface_is_solved() {
     }
 }
 
-/// Spots of all sizes, with holes, that fill about this part of the grid.
+/// Spots of all sizes, with holes, that fill about a part `fill` of the grid.
 fn spots(grid: &Grid, fill: f64, random: &mut Random) -> Vec<bool> {
     let mut contact = vec![false; grid.len()];
     while contact.iter().filter(|&&inside| inside).count() < (fill * grid.len() as f64) as usize {
@@ -262,7 +261,7 @@ fn tables_without_a_positive_circulant_or_without_symmetry_give_no_wrong_result(
     let grid = Grid::new(20, 16, 1.0, 1.0).unwrap();
     let distance = |kx: i64, ky: i64| ((kx * kx + ky * ky) as f64).sqrt();
     let cases = [
-        // its circulant is negative for some waves, as A itself may be on large contact areas
+        // The circulant is negative for some waves, as A itself may be on large contact areas.
         (
             "box",
             table(&grid, |kx, ky| {
@@ -275,7 +274,7 @@ fn tables_without_a_positive_circulant_or_without_symmetry_give_no_wrong_result(
                 }
             }),
         ),
-        // positive definite, but the circulant of period m wraps what the table ends with into a negative one
+        // Positive definite, but the circulant of period m adds the ends of the table with a negative sign.
         (
             "waves",
             table(&grid, |kx, ky| {

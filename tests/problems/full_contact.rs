@@ -1,4 +1,4 @@
-//! Full contact with two periods, which has no end: its grids have enough elements all the same, and its approach has an error.
+//! Full contact with two periods, in which the contact has no edge: its grids still have enough elements, and its approach has an error.
 //!
 //! The approach by force is the mean of the undeformed distance: 0.01 for `0.01 (1 - cos x cos y)` on any grid of two elements and more each way.
 
@@ -60,7 +60,7 @@ fn price_lists_name_grids_of_enough_elements() {
     assert!(row.obstacle.is_none() && found.mx >= Quantity::MaxVonMises.enough_across(), "{row:?}");
 }
 
-/// A search from one element, whose distance is that of the middle: 0.
+/// A search from one element, whose distance is that at the middle, 0.
 #[test]
 fn a_search_goes_on_to_enough_elements() {
     for m in [1, 2, 4] {
@@ -77,7 +77,7 @@ fn a_search_goes_on_to_enough_elements() {
     }
 }
 
-/// A line of waves on one row of elements is uniform across it: the row is enough.
+/// A line of waves on one row of elements is uniform across the row, so that one row is enough.
 #[test]
 fn one_row_of_elements_is_enough_across_a_line() {
     let grid = Grid::new(64, 1, LENGTH / 64.0, LENGTH).expect("a grid");
@@ -89,7 +89,7 @@ fn one_row_of_elements_is_enough_across_a_line() {
     assert_eq!(found.solver.expect("a result").grid().my, 1);
 }
 
-/// Flat plates: the approach is their distance, also where this is 0, and its error that of the residual on each grid.
+/// Flat plates: the approach is their distance, also if it is 0, and its error is that of the residual on each grid.
 #[test]
 fn the_approach_of_flat_plates_is_exact() {
     let grid = on(64);

@@ -1,5 +1,5 @@
-//! Hard cases: the right answer or a clear status, never a NaN. One file per family in hard_cases/; what is here asks one method, or
-//! one option, for one thing.
+//! Hard cases: the right answer or a clear status, never a NaN. There is one file per family in families/; the tests here are of one method or one
+//! option each.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -70,7 +70,7 @@ fn lines_of_elements_and_ragged_grids_work_with_every_method() {
                 let solver = certified(&Scene::new(grid, &h, rigid_on(1.0), load), &options);
                 let size = reference.state().p.iter().copied().fold(0.0, f64::max);
                 for (a, b) in solver.state().p.iter().zip(&reference.state().p) {
-                    // residual 1e-9, times the condition of A on these small grids (below 30)
+                    // Residuals of 1e-9, times the condition number of A on these small grids (below 30).
                     assert!((a - b).abs() <= 1e-7 * size, "{method:?} {load:?} {mx} x {my}: {a} for {b}");
                 }
             }
@@ -129,7 +129,7 @@ fn a_flat_punch_and_full_contact_are_solved() {
 
 #[test]
 fn a_unit_of_length_or_pressure_changes_no_digit() {
-    // powers of two: the same bits, in metres or millimetres, pascals or megapascals
+    // Powers of two, as between units, give the same bits.
     let grid = Grid::new(50, 41, 0.11, 0.09).unwrap();
     let h = paraboloid(&grid, 0.2);
     for load in [Load::Approach(0.3), Load::Force(2.0)] {
@@ -180,7 +180,7 @@ fn very_tight_tolerances_end() {
                 solve(&Scene::new(grid, &h, rigid_on(1.0), Load::Approach(0.2)), &options).unwrap();
             let residual = report.measures.certificate.residual;
             assert!(solver.state().p.iter().all(|p| p.is_finite()));
-            // Round-off of a product is about 1e-15 of u; a status OK must be true all the same.
+            // The round-off of a product is about 1e-15 of u; a status OK must still be true.
             assert!(residual <= 1e-12, "{method:?} {tolerance}: {residual} after {stop:?}");
             assert_eq!(
                 stop == Outcome::Converged,
@@ -225,14 +225,14 @@ fn a_table_of_the_half_space_gives_the_pressures_of_the_half_space() {
 fn a_table_without_symmetry_is_solved_as_it_is() {
     let grid = Grid::new(24, 20, 0.1, 0.1).unwrap();
     let h = paraboloid(&grid, 0.3);
-    // 10 % more influence to one side than to the other
+    // 10 % more influence on one side than on the other.
     let influence = table_of(&grid, 24, 20, |kx, _, value| value * (1.0 + 0.05 * (kx.signum() as f64)));
     let scene =
         Scene { influence: Some(influence.clone()), ..Scene::new(grid, &h, rigid_on(1.0), Load::Approach(0.1)) };
     for method in [Method::Auto, Method::Norm, Method::Multigrid, Method::FullMultigrid] {
         let solver = certified(&scene, &Options { method, tolerance: 1e-9, ..Options::default() });
         let state = solver.state();
-        // independently: e by direct summation
+        // e by direct summation.
         let mut u = vec![0.0; grid.len()];
         super::dense::apply(&Coefficients::from(influence.clone()), &grid, &state.p, &mut u);
         for i in 0..grid.len() {
@@ -333,7 +333,7 @@ fn coefficients_larger_than_that_of_an_element_on_itself_are_refused() {
 fn a_fixed_contact_area_is_solved_with_pressures_of_either_sign() {
     let grid = Grid::new(20, 20, 0.1, 0.1).unwrap();
     let h = paraboloid(&grid, 1.0);
-    // far larger than the contact area: the rim is in tension
+    // The fixed area is far larger than the contact area, so that its rim is in tension.
     let contact: Vec<bool> = h.iter().map(|h| *h <= 0.6).collect();
     let zero = vec![0.0; grid.len()];
     for load in [Load::Approach(0.1), Load::Force(0.05)] {
@@ -384,15 +384,15 @@ fn a_solved_problem_is_a_good_guess_and_a_nonsense_guess_does_no_harm() {
             assert_eq!(stop, Outcome::Converged, "{method:?} {load:?}");
             let size = p.iter().copied().fold(0.0, f64::max);
             for (a, b) in solver.state().p.iter().zip(&p) {
-                // residual 1e-6, times the condition of A on the contact area (below 100)
+                // Residuals of 1e-6, times the condition number of A on the contact area (below 100).
                 assert!((a - b).abs() <= 1e-4 * size, "{method:?} {load:?}: {a} for {b}");
             }
         }
     }
 }
 
-/// A product for each iteration; beside them the start, what truncation leaves, the end of the round, and the certificate. A round more
-/// to prove the update would take two.
+/// One product for each iteration. In addition: the start, the correction of truncations, the end of the round, and the certificate. Another round to
+/// confirm the update would take two more.
 #[test]
 fn the_update_criterion_costs_no_round_of_its_own_in_double_precision() {
     let grid = Grid::new(96, 64, 0.1, 0.1).unwrap();
@@ -426,7 +426,7 @@ fn the_update_criterion_means_the_last_change_of_the_pressures() {
         let rms = (state.p.iter().map(|p| p * p).sum::<f64>() / state.contact_count() as f64).sqrt();
         assert_eq!(stop, Outcome::Converged);
         assert!(report.count.update <= 1e-5 * rms, "{method:?}: {} of {rms}", report.count.update);
-        // a stop by updates leaves an error of the size of an update over (1 - convergence factor)
+        // After a stop by updates the error is an update over (1 - convergence factor).
         assert!(report.measures.certificate.residual <= 1e-4);
     }
 }
@@ -451,7 +451,7 @@ fn an_error_ratio_stops_at_a_part_of_the_discretisation_error() {
                 enough.count.cycles,
                 exact.count.cycles
             );
-            // what is found is off by less than the discretisation error that was estimated for it
+            // The error of the result is less than its estimated discretisation error.
             let off = match load {
                 Load::Approach(_) => enough.measures.force - exact.measures.force,
                 Load::Force(_) => enough.measures.approach - exact.measures.approach,
@@ -516,14 +516,14 @@ fn few_elements_are_solved_directly() {
         let (solver, stop, report) = solve(&Scene::new(grid, &h, rigid_on(3.0), load), &options).unwrap();
         assert_eq!(stop, Outcome::Converged);
         assert!(solver.state().contact_count() > 1);
-        // The direct solve leaves round-off, the iteration would stop at the tolerance.
+        // The residual of the direct solve is round-off; iterations would stop at the tolerance.
         let residual = report.measures.certificate.residual;
         assert!(residual <= 1e-13 && report.measures.certificate.violation == 0.0, "{load:?}: {residual:e}");
     }
 }
 
-/// Under a prescribed approach the uniform part of the residual is removed along the last change: a step takes about as many iterations
-/// as under the force that it leads to. Without that it takes 1.3 to 1.5 times as many.
+/// Under a prescribed approach the uniform part of the residual is removed along the last change, so that a step takes about as many iterations as
+/// under the force that it leads to.
 #[test]
 fn time_steps_by_approach_take_as_many_iterations_as_by_force() {
     let grid = Grid::new(120, 130, 0.5, 0.25).unwrap();
@@ -551,8 +551,8 @@ fn time_steps_by_approach_take_as_many_iterations_as_by_force() {
     assert!(by_approach <= 1.15 * by_force, "{by_approach} iterations by approach, {by_force} by force");
 }
 
-/// Where C shrinks, a step takes three products beside its iterations: of what the prediction truncates, of what leaves C with the last change, and
-/// of one certificate. Without a step along that change in each iteration the first certificate does not hold: then it takes five.
+/// If C shrinks, a step takes three products in addition to its iterations: those of the truncated prediction, of the elements of the last change
+/// that leave C, and of one certificate. A step along the last change in each iteration makes the first certificate hold.
 #[test]
 fn a_step_in_time_needs_one_certificate() {
     let grid = Grid::new(1024, 1024, 20.0 / 1024.0, 12.0 / 1024.0).unwrap();
@@ -595,15 +595,15 @@ fn time_steps_begin_with_what_the_last_ones_changed() {
             let scale = reference.measures.max_pressure;
             let pairs = solver.state().p.iter().zip(&from_nothing.state().p);
             let difference = pairs.map(|(p, q)| (p - q).abs()).fold(0.0, f64::max);
-            // Two residuals of 1e-6 may differ by so much at the rim.
+            // Two solutions with residuals of 1e-6 may differ by this at the rim.
             assert!(difference <= 1e-3 * scale, "step {step}: {difference} of {scale}");
             if step >= 2 {
                 let (warm, cold) = (report.count.work_units, reference.count.work_units);
                 assert!(warm < 0.8 * cold, "step {step}: {warm} work units, {cold} from nothing");
             }
         }
-        // The same once more: nothing is left to do, and no product is needed to see that; by force one is, unless the sum of p is the force to the last
-        // digit.
+        // The same load again: nothing is left to do. By approach this needs no product; by force it needs one, unless the sum of p is the force to
+        // the last digit.
         let scene = Scene::new(grid, &h, rigid_on(3.0), load(4));
         let (stop, report) = solver.solve(&scene, &next, None, None).unwrap();
         assert_eq!((stop, report.count.cycles), (Outcome::Converged, 0));

@@ -1,4 +1,4 @@
-//! Flash temperature against closed forms and an integral in polar coordinates.
+//! Flash temperatures compared with closed forms, and with an integral in polar coordinates.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ fn found(grid: Grid, flux: &[f64], speed: [f64; 2], share: Option<f64>) -> Flash
     flash_temperature(&heat, &Threads::One).expect("temperatures")
 }
 
-/// At rest: T = pi q0 a/(4 lambda) below the middle of q0 sqrt(1 - r^2/a^2) (Love's integral as Hertz has it, of 1/(2 pi lambda r)).
+/// At rest: T = pi q0 a/(4 lambda) in the middle of q0 sqrt(1 - r^2/a^2) (Love's integral of 1/(2 pi lambda r), as for Hertz).
 #[test]
 fn a_source_at_rest_is_as_warm_as_hertz_is_deep() {
     let (a, q0, n) = (1e-3, 1e7, 129);
@@ -22,13 +22,13 @@ fn a_source_at_rest_is_as_warm_as_hertz_is_deep() {
         (0..n * n).map(|i| q0 * (1.0 - (at(i % n).powi(2) + at(i / n).powi(2)) / (a * a)).max(0.0).sqrt()).collect();
     let rest = found(grid, &flux, [0.0; 2], Some(1.0));
     let exact = PI * q0 * a / (4.0 * 50.0);
-    // Second order in the elements, of which 58 go to the radius.
+    // The error is of second order in the elements, of which the radius has 58.
     assert!((rest.largest[0] / exact - 1.0).abs() < 1e-3, "{} {exact}", rest.largest[0]);
     assert!(rest.at[0] == 64 * n + 64 && rest.largest[1] == 0.0 && rest.share == 1.0);
 }
 
-/// A fast band: T = 2 q/lambda sqrt(kappa x/(pi V)) at a distance x behind its leading edge, and behind it the difference of two of these
-/// (Jaeger 1942). What conduction along x changes falls as kappa/(V x).
+/// A fast band: T = 2 q/lambda sqrt(kappa x/(pi V)) at a distance x behind its leading edge, and behind the band the difference of two of these
+/// (Jaeger 1942). The effect of conduction along x falls as kappa/(V x).
 #[test]
 fn behind_the_edge_of_a_fast_band_the_temperature_grows_as_the_root() {
     let (n, d, speed, q) = (64, 1e-4, 20.0, 1e8);
@@ -67,7 +67,7 @@ fn own(grid: &Grid, wave: f64) -> f64 {
     (0..steps).map(of).sum::<f64>() / steps as f64
 }
 
-/// The same at an offset, by Simpson's rule: nothing is singular there.
+/// lambda T at an offset from the element, by Simpson's rule: the integrand is smooth there.
 fn offset(grid: &Grid, (kx, ky): (f64, f64), wave: f64) -> f64 {
     let steps = 400;
     let part = |k: usize, d: f64| (k as f64 / steps as f64 - 0.5) * d;
@@ -97,15 +97,15 @@ fn one_element_heats_as_the_integral_of_jaegers_source() {
         let near = [(1_i64, 0_i64), (4, 0), (-1, 0), (-4, 1), (0, 1), (2, 2), (1, -3)];
         for (kx, ky) in near.into_iter().chain([(19, 0), (24, 3), (-20, 0), (20, -8), (0, 14), (-9, 13)]) {
             let exact = offset(&grid, (kx as f64, ky as f64), wave);
-            // Simpson's rule on parts of 1/400 of an element, on near ones of a fast source across the thin layer at its edge.
+            // The error of Simpson's rule on parts of 1/400 of an element; near a fast source there is a thin layer at the edge.
             let allowed = if kx.abs() + ky.abs() < 13 || speed > 1.0 { 2e-5 } else { 1e-10 };
             assert!((at(kx, ky) - exact).abs() < allowed * scale, "{speed} {kx} {ky}: {} {exact}", at(kx, ky));
         }
     }
 }
 
-/// Elements far longer than wide, wider than long, and far larger than kappa/V, at their own centre: `1/(2 pi)` times the sum over edges of
-/// `d integral of (1 - exp(-z))/z dt`, `z = P (d cosh t - x)`, d the distance of an edge and d sinh t the place along it. By Simpson's rule.
+/// Elements far longer than wide, wider than long, and far larger than kappa/V, at their own centre: `1/(2 pi)` times the sum over edges of `d
+/// integral of (1 - exp(-z))/z dt`, `z = P (d cosh t - x)`. d is the distance of an edge and d sinh t the place along it. By Simpson's rule.
 #[test]
 fn long_and_large_elements_heat_as_their_edges_say() {
     for (dx, dy) in [(100.0, 1.0), (1.0, 1.0), (1.0, 100.0), (1e4, 3.0)] {
@@ -129,7 +129,7 @@ fn long_and_large_elements_heat_as_their_edges_say() {
             let grid = Grid::new(1, 1, dx, dy).expect("a grid");
             let found = 50.0 * found(grid, &[1.0], [wave * 2.8e-5, 0.0], Some(1.0)).largest[0];
             println!("{dx} {dy} {peclet}: {:.1e}", found / exact - 1.0);
-            // What the rules leave on panels of a ratio of four, and the first one's logarithm: 1e-9 of the element where it is most of it.
+            // The error of the rules on panels with a ratio of four, and of the logarithm on the first one.
             assert!((found / exact - 1.0).abs() < 1e-9, "{dx} {dy} {peclet}: {found} {exact}");
         }
     }
@@ -143,7 +143,7 @@ fn the_heat_is_shared_so_that_both_are_as_warm() {
     assert!((both.largest[0] / both.largest[1] - 1.0).abs() < 1e-12 && both.share > 0.5 && both.share < 1.0);
     let one = found(grid, &flux, [-2.0, 0.5], Some(1.0));
     assert!((one.largest[0] * both.share / both.largest[0] - 1.0).abs() < 1e-12);
-    // Nothing flows.
+    // Without a heat flux.
     let none = found(grid, &vec![0.0; grid.len()], [1.0, 1.0], None);
     assert!(none.share == 0.5 && none.rise.iter().flatten().all(|t| *t == 0.0));
 }
@@ -162,7 +162,7 @@ fn numbers_out_of_their_range_are_refused() {
     assert!(matches!(not_finite, Err(Error::NotFinite(_))));
 }
 
-/// Temperatures beyond the range of numbers are refused, by what the caller gave.
+/// Temperatures beyond the range of numbers are refused, and the message names the input.
 #[test]
 fn what_is_beyond_the_range_is_refused_by_its_name() {
     let grid = Grid::new(3, 3, 1.0, 1.0).expect("a grid");
@@ -181,11 +181,11 @@ fn what_is_beyond_the_range_is_refused_by_its_name() {
         let Err(Error::NotFinite(message)) = found else { panic!("{words}: {found:?}") };
         assert!(message.starts_with(words), "{message}");
     }
-    // Within the range they are of the size of the flux.
+    // Within the range temperatures are of the order of the flux.
     assert!(of(1e300, 1.0, 1.0).is_ok_and(|largest| largest.iter().all(|top| *top > 1e299 && *top < 1e301)));
 }
 
-/// Without a part that is given, largest temperatures are the same where both bodies get warmer; a flux below 0 cools.
+/// Without a given share the largest temperatures of both bodies are equal, if both bodies get warmer; a negative flux cools.
 #[test]
 fn a_flux_that_cools_too_leaves_both_as_warm() {
     let (n, d) = (12, 1e-4);
@@ -204,7 +204,7 @@ fn a_flux_that_cools_too_leaves_both_as_warm() {
 /// trapezoidal rule, to round-off.
 fn of_line(x: f64, wave: f64) -> f64 {
     let a = (wave * x.abs()).max(1e-300);
-    // It is as wide as 1 over the root of 1 + a, and its width in the complex plane is pi/2.
+    // The integrand has a width of 1/sqrt(1 + a), and is analytic in a strip of half-width pi/2.
     let step = 0.2 / (1.0 + a).sqrt();
     let fades = if x < 0.0 { (-2.0 * a).exp() } else { 1.0 };
     let term = |k: u32| (-2.0 * a * (0.5 * step * f64::from(k)).sinh().powi(2)).exp();
@@ -212,7 +212,7 @@ fn of_line(x: f64, wave: f64) -> f64 {
     fades * step * (0.5 + (1..terms).map(term).sum::<f64>())
 }
 
-/// The integral of f from a to b by the double exponential rule; f may have the root of the distance, or its logarithm, at the ends.
+/// The integral of f from a to b by the double exponential rule. At the ends f may have a square root or a logarithm of the distance.
 fn between(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let step = 1.0 / 16.0;
     let term = |k: i32| {
@@ -224,14 +224,14 @@ fn between(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (b - a) * step * (-56..=56).map(term).sum::<f64>()
 }
 
-/// A band of Hertz's pressure, `q0 sqrt(1 - x^2/a^2)`, that moves at any speed: lines of sources side by side (Carslaw & Jaeger, section 10.7), and the limits
-/// of both ends. `P a` is the Peclet number.
+/// A band with Hertz's pressure, `q0 sqrt(1 - x^2/a^2)`, that moves at any speed: the integral of line sources (Carslaw & Jaeger, section 10.7), and
+/// the limits of slow and fast bands. `P a` is the Peclet number.
 #[test]
 fn a_band_of_hertz_is_as_warm_as_its_lines() {
     let (n, a, q0) = (401, 1e-3, 1e7);
     let d = 2.4 * a / n as f64;
     let x = |k: usize| (k as f64 - 200.0) * d;
-    // The mean over an element: its antiderivative.
+    // The antiderivative, for means over elements.
     let whole = |x: f64| {
         let s = (x / a).clamp(-1.0, 1.0);
         0.5 * a * (s * (1.0 - s * s).sqrt() + s.asin())
@@ -239,7 +239,7 @@ fn a_band_of_hertz_is_as_warm_as_its_lines() {
     let flux: Vec<f64> = (0..n).map(|k| q0 * (whole(x(k) + 0.5 * d) - whole(x(k) - 0.5 * d)) / d).collect();
     for peclet in [0.05, 0.5, 5.0, 50.0, 2e3] {
         let (wave, speed) = (peclet / a, 2.0 * 1.4e-5 * peclet / a);
-        // A strip so wide that its sides are nothing to the middle: they fade as exp(-P r).
+        // A strip so wide that its ends have no effect in the middle: they fade as exp(-P r).
         let grid = Grid::new(n, 1, d, 1.0).expect("a grid");
         let warm = found(grid, &flux, [speed, 0.0], Some(1.0));
         let exact = |at: f64| {
@@ -251,8 +251,8 @@ fn a_band_of_hertz_is_as_warm_as_its_lines() {
         let largest = warm.largest[0];
         for k in (0..n).step_by(10) {
             let (rise, exact) = (warm.rise[0][k], exact(x(k)));
-            // Of second order in the elements, of which 167 go to a. Of a fast band the flux of an element is not that at its middle for as long as
-            // it takes to get there: (2/3) q' (d/2)^(3/2) of 2.19 q0 a^(1/2). Beside the edges the flux has the root of the distance.
+            // The error is of second order in the elements, of which a has 167. For a fast band the flux of an element differs from that at its
+            // middle: an error of (2/3) q' (d/2)^(3/2), relative to 2.19 q0 a^(1/2). Near the edges the flux has the square root of the distance.
             let s = (x(k) / a).abs().min(1.0);
             let slope = s / (1.0 - s * s).max(8.0 * d / a).sqrt();
             let near = if (x(k).abs() - a).abs() < 4.0 * d { 5e-4 } else { 2e-5 };
@@ -260,7 +260,7 @@ fn a_band_of_hertz_is_as_warm_as_its_lines() {
             assert!((rise - exact).abs() < tolerance * largest, "{peclet} {k}: {rise} {exact} of {largest}");
         }
         if peclet > 1e3 {
-            // Blok (1937): 1.11 times the heat of a unit of its length over the root of lambda rho c V 2 a.
+            // Blok (1937): 1.11 times the heat per length over the square root of lambda rho c V 2 a.
             let blok = 1.11 * (0.5 * PI * q0 * a) / (50.0 * (speed / 1.4e-5 * 2.0 * a).sqrt());
             assert!((largest / blok - 1.0).abs() < 5e-3, "{largest} {blok}");
         }

@@ -1,4 +1,4 @@
-//! The exact Hertz solution against printed values, and the convergence of the numerical solution to it.
+//! The exact Hertz solution compared with printed values, and the convergence of the numerical solution to it.
 
 use crate::paper as case;
 
@@ -13,7 +13,7 @@ fn close(value: f64, exact: f64, tolerance: f64) {
 #[test]
 fn the_exact_solution_of_the_papers_case_has_all_digits() {
     let compliance = Bodies::same(case::SHEAR_MODULUS, case::POISSON_RATIO).compliance();
-    // complete elliptic integrals in double precision, computed independently
+    // Complete elliptic integrals in double precision, computed independently.
     for exact in [
         hertz(case::CURVATURE.0, case::CURVATURE.1, case::APPROACH, compliance).unwrap(),
         hertz_by_force(case::CURVATURE.0, case::CURVATURE.1, 81986.77696838684, compliance).unwrap(),

@@ -1,17 +1,16 @@
-//! Two hundred measured-like surfaces by seed: as they are, with one high point, with fifteen, worn to a plateau; a third of them with holes, a fifth with
-//! quantised heights, a seventh with a tilt. AUTO by force and by approach. The limits are those of a prototype that adds to p instead of scaling it, on forty
-//! such scenes.
+//! Two hundred random surfaces like measured ones: without change, with one high point, with fifteen, worn to a plateau. A third of them have holes,
+//! a fifth quantised heights, a seventh a tilt. AUTO by force and by approach. The limits are those of a prototype on forty such scenes.
 
 use crate::measured_surfaces::{iterations, rough};
 use crate::random::Random;
 
-/// Elements of a side: of most surfaces, and of the last ten.
+/// The number of elements of a side: for most surfaces, and for the last ten.
 const SIDES: [usize; 2] = [48, 150];
-/// Iterations of the prototype: 16 by force and 16.5 by approach in the median, 21 and 23 at most.
+/// The iterations of the prototype: medians of 16 by force and 16.5 by approach, and at most 21 and 23.
 const MEDIAN: [u64; 2] = [16, 16];
 const MOST: [u64; 2] = [21, 23];
 
-/// A surface and a force of the kind that a seed has.
+/// The surface and the force for a seed.
 fn surface(seed: u64, m: usize) -> (Vec<f64>, f64) {
     let random = &mut Random::new(1000 + seed);
     let mut h = rough(m, m, random.between(0.1, 0.9), seed);

@@ -1,4 +1,4 @@
-//! Kinks of the surface within the contact: largest pressures grow as a logarithm of the number of elements, and have no error.
+//! Kinks of the surface within the contact: largest pressures grow as the logarithm of the number of elements, and have no error.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Period, Scene};
@@ -17,7 +17,7 @@ fn bent(mx: usize, my: usize, slope: f64) -> (Grid, Vec<f64>) {
     (grid, (0..grid.len()).map(of).collect())
 }
 
-/// Whether the largest pressure has an error, and the pressure.
+/// Whether the largest pressure has an error, and its value.
 fn largest((grid, h): &(Grid, Vec<f64>), is_line: bool) -> (bool, f64) {
     let bodies = Bodies::same(1.0, 0.3);
     let period = is_line.then_some(Period { x: true, y: true });
@@ -27,10 +27,11 @@ fn largest((grid, h): &(Grid, Vec<f64>), is_line: bool) -> (bool, f64) {
     (report.error.max_pressure.is_some(), report.measures.max_pressure)
 }
 
-/// The pressure below the kink lies on that of the parabola, which elements resolve: its error was a fifth of the growth on four times as many.
+/// The peak at the kink adds to the pressure of the parabola, which elements resolve. The error of the parabola must not be taken for that of the
+/// peak.
 #[test]
 fn the_largest_pressure_at_a_kink_has_no_error() {
-    // On coarse grids four doublings of a weak kink add less than the error of the parabola.
+    // On coarse grids four doublings of a weak kink add less than the error of the parabola, so that grids are finer.
     for (slope, coarsest) in [(0.005, 64), (0.02, 32)] {
         for m in [coarsest, 2 * coarsest] {
             let (is_known, pressure) = largest(&bent(m, m, slope), false);
@@ -41,13 +42,13 @@ fn the_largest_pressure_at_a_kink_has_no_error() {
             assert!(!is_known, "{slope} on {m}: {pressure}");
         }
     }
-    // Grows by E* s ln 2/(2 pi) each time that the elements are halved.
+    // The peak grows by E* s ln 2/(2 pi) for each doubling.
     let [coarse, fine] = [64, 4096].map(|m| largest(&bent(m, 1, 0.02), true).1);
     let modulus = 1.0 / (1.0 - 0.3);
     let expected = 6.0 * modulus * 0.04 * 2.0_f64.ln() / (2.0 * std::f64::consts::PI);
-    // The kink lies anywhere in its element.
+    // The kink has any place within its element.
     assert!(((fine - coarse) / expected - 1.0).abs() < 0.3, "{coarse} {fine}: {expected}");
-    // Without a kink, and with one that opens: an edge between two facets carries nothing.
+    // Without a kink, and with a concave one, which carries no pressure.
     for slope in [0.0, -0.03] {
         for m in [64, 128] {
             assert!(largest(&bent(m, m, slope), false).0, "{slope} on {m} x {m}");
@@ -55,7 +56,7 @@ fn the_largest_pressure_at_a_kink_has_no_error() {
     }
 }
 
-/// A search for the largest pressure does not end with an error that it does not have.
+/// A search for the largest pressure does not end as converged, because it has no error.
 #[test]
 fn a_search_at_a_kink_does_not_say_that_it_is_done() {
     let (grid, h) = bent(32, 32, 0.02);

@@ -1,5 +1,5 @@
-//! Effect `layer`: Winkler's foundation when it is soft, nothing when it is rigid, one compliance per element against the uniform one,
-//! and a count of products that does not grow.
+//! Effect `layer`: Winkler's foundation if it is soft, no effect if it is rigid, equal compliances per element as a uniform one, and a number of
+//! products that does not grow.
 
 use super::dense;
 use crate::support::run;
@@ -25,7 +25,7 @@ fn assert_near(found: &State, expected: &[f64], tolerance: f64, what: &str) {
     }
 }
 
-/// The self-influence of an element: what compliances are compared with.
+/// The self-influence of an element, the unit of compliances.
 fn self_influence(scene: &Scene<'_>) -> f64 {
     scene.coefficients().unwrap().at(0, 0)
 }
@@ -35,7 +35,7 @@ fn a_soft_layer_is_winklers_foundation() {
     let grid = Grid::new(40, 30, 0.05, 0.05).unwrap();
     let h = ellipse(&grid);
     let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.2));
-    // A p <= (sum of all coefficients) p, less than 1200 self-influences; so p = (approach - h)/c to 1200/1e9.
+    // A p is at most p times the sum of all coefficients, below 1200 self-influences, so that p = (approach - h)/c to 1200/1e9.
     let c = 1e9 * self_influence(&plain);
     let winkler: Vec<f64> = h.iter().map(|h| f64::max(0.2 - h, 0.0) / c).collect();
     for method in [Method::Auto, Method::Norm, Method::Multigrid, Method::FullMultigrid] {
@@ -95,7 +95,7 @@ fn one_compliance_per_element_satisfies_the_equations_of_the_direct_sum() {
                 let size = u.iter().copied().fold(0.0, f64::max);
                 for i in 0..grid.len() {
                     let e = h[i] - report.measures.approach + u[i] + c[i] * state.p[i];
-                    // The tolerance, over some 800 elements of which one may have all of the residual; and outside C, FFT round-off.
+                    // The tolerance over some 800 elements, one of which may have all of the residual; outside C, FFT round-off.
                     let allowed = 1e-10 * size * 30.0;
                     let holds = if state.contact[i] { e.abs() <= allowed } else { e >= -allowed && state.p[i] == 0.0 };
                     assert!(holds && state.p[i] >= 0.0, "{scale} {period:?} {load:?}, element {i}: e = {e}");
@@ -116,7 +116,7 @@ fn one_compliance_everywhere_is_the_uniform_layer() {
     let (uniform, _) = run(&Scene { layer: Some(Layer(Each::Uniform(c))), ..plain.clone() }, &tight(Method::Auto));
     let scene = Scene { layer: Some(Layer(Each::PerElement(&each))), ..plain };
     for method in [Method::Auto, Method::Norm] {
-        // Relative residual 1e-10, condition number below 100 with that layer.
+        // A relative residual of 1e-10, and a condition number below 100 with this layer.
         assert_near(run(&scene, &tight(method)).0.state(), &uniform.state().p, 1e-8, &format!("{method:?}"));
     }
 }
@@ -139,7 +139,7 @@ fn the_count_of_products_does_not_grow() {
             let smooth = products(Some(Layer(Each::PerElement(&smooth))));
             assert!(smooth <= without + 2, "{relative}, smooth: {smooth} products, without a layer {without}");
             assert!(uniform <= without + 2, "{relative}: {uniform} products, without a layer {without}");
-            // Compliances over three decades side by side, none at the rim: measured 7 to 17, without a layer 8.
+            // Compliances over three decades, and 0 at the rim: 7 to 17 products, without a layer 8.
             assert!(each <= 2 * without + 1, "{relative}, per element: {each} products, without a layer {without}");
         }
     }

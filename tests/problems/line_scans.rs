@@ -1,11 +1,11 @@
-//! Line scans in plane strain: pieces of the contact area move as flat punches; with two periods, by approach, the force is found for the approach.
+//! Line scans in plane strain: pieces of the contact area move as flat punches. With two periods, by approach, the force for the approach is found.
 
 use crate::measured_surfaces::{auto, bodies, rough};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Load, Period, Scene};
 use contact_normal::solver::{Options, Outcome, Solver};
 
-/// Measured: 14 to 50 iterations by force, 15 to 40 by approach; 43 to 80 with two periods, by approach.
+/// The solves take 14 to 50 iterations by force and 15 to 40 by approach; with two periods by approach 43 to 80.
 #[test]
 fn line_scans_with_periods_end() {
     let m = 9600;
@@ -28,7 +28,7 @@ fn line_scans_with_periods_end() {
     }
 }
 
-/// With two periods contact becomes full at a finite force, while the mean gap goes to 0 with the approach.
+/// With two periods contact becomes full at a finite force, and the mean gap tends to 0 with the approach.
 #[test]
 fn lines_near_full_contact_end() {
     let m = 4000;
@@ -53,7 +53,7 @@ fn lines_near_full_contact_end() {
     }
 }
 
-/// A line along y, and lines whose elements are long without a period, are in plane strain as well: A falls off as a logarithm.
+/// Lines along y, and lines with long elements without a period, are also in plane strain: A falls as a logarithm.
 #[test]
 fn lines_of_long_elements_end() {
     let m = 4096;

@@ -1,4 +1,4 @@
-//! Products with pressures of one's own, and the stiffness of a result: by the test's own coefficients, dense, and by differences of two solves.
+//! Products with given pressures, and the stiffness of a result: compared with the test's own dense coefficients, and with differences of two solves.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ use contact_normal::solver::{ActiveSet, Guess, InitialGuess, Options, Outcome, S
 
 use crate::support::run;
 
-/// The displacement at a distance (x, y) from the middle of an element of which unit pressure acts, times pi E*: Love (1929).
+/// The displacement at a distance (x, y) from the middle of an element with unit pressure, times pi E*: Love (1929).
 fn love(x: f64, y: f64, dx: f64, dy: f64) -> f64 {
     let corner = |a: f64, b: f64| {
         let r = a.hypot(b);
@@ -33,7 +33,7 @@ fn times(a: &[Vec<f64>], p: &[f64]) -> Vec<f64> {
     a.iter().map(|row| row.iter().zip(p).map(|(a, p)| a * p).sum()).collect()
 }
 
-/// The sum of s with `A s = 1` on these elements, by elimination with pivots.
+/// The sum of s with `A s = 1` on these elements, by elimination with pivoting.
 fn sum_of_solution(a: &[Vec<f64>], elements: &[usize]) -> f64 {
     let n = elements.len();
     let row = |&i: &usize| elements.iter().map(|&j| a[i][j]).chain([1.0]).collect();
@@ -59,7 +59,7 @@ fn grid() -> Grid {
     Grid::new(17, 14, 0.5, 0.6).expect("a grid")
 }
 
-/// A ball with a little relief.
+/// A ball with a little waviness.
 fn bump(grid: &Grid) -> Vec<f64> {
     let at = |i: usize| {
         let (x, y) = ((i % grid.mx) as f64 - 7.7, (i / grid.mx) as f64 - 6.4);
@@ -107,7 +107,7 @@ fn a_product_is_that_of_the_dense_matrix_and_leaves_the_result_alone() {
         solver.product(&p, &mut u).expect("a product");
         let largest = u.iter().fold(0.0f64, |largest, u| largest.max(u.abs()));
         for (i, expected) in times(matrix, &p).into_iter().enumerate() {
-            // The closed form loses digits where it is a difference of logarithms: 1e-12 at these offsets.
+            // The closed form is a difference of logarithms: an error of 1e-12 at these offsets.
             assert!((u[i] - expected).abs() <= 1e-11 * largest, "{what}: {} for {expected}", u[i]);
         }
         assert_eq!(solver.state().p, before, "{what}");
@@ -141,7 +141,7 @@ fn what_is_no_pressure_is_refused() {
     assert!(u.iter().all(|u| *u == 1.0));
 }
 
-/// With two periods and a coating a given force is solved without what the mean pressure compresses; a product has it.
+/// With two periods and a coating a given force is solved without the compression by the mean pressure; a product includes it.
 #[test]
 fn a_product_has_the_compression_whatever_the_load_is() {
     let grid = Grid::new(16, 16, 0.5, 0.5).expect("a grid");
@@ -232,7 +232,7 @@ fn the_stiffness_is_the_difference_of_two_solves() {
         let found = solver.stiffness().expect("a stiffness").1;
         let [(before, less), (after, more)] = [0.4 - step, 0.4 + step].map(at);
         assert_eq!(before, after, "{what}: the contact area stays");
-        // Forces to 1e-12, of which a part of 1e-6 is the difference.
+        // Forces have an accuracy of 1e-12, and their difference is 1e-6 of them.
         assert_near(found.value, (more - less) / (2.0 * step), 1e-5, what);
     }
 }
@@ -251,7 +251,7 @@ fn without_contact_or_a_result_there_is_no_stiffness() {
     assert!(matches!(solver.stiffness(), Err(Error::Infeasible(_))));
 }
 
-/// Of a contact area that is given, all of it moves; and units do not matter.
+/// On a fixed area all elements move, also those in tension. Units have no effect.
 #[test]
 fn a_fixed_area_and_any_units_have_the_same_stiffness() {
     let grid = grid();

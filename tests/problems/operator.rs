@@ -1,4 +1,4 @@
-//! The product by FFT is the product by direct summation, and both are right.
+//! The product by FFT equals that by direct summation, and both are right.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace, Table};
@@ -55,7 +55,7 @@ fn fft_and_direct_summation_agree_for_the_half_space() {
         for (dx, dy) in [(1.0, 1.0), (0.02, 1.0), (4.0, 0.7)] {
             let grid = Grid::new(mx, my, dx, dy).unwrap();
             let influence = Coefficients::from(HalfSpace::new(dx, dy, 1e-5));
-            // everywhere, and on a few rows in the middle only (the pruned path)
+            // Pressures everywhere, and on a few rows in the middle only (the pruned path).
             let full: Vec<f64> = (0..grid.len()).map(|_| random.next()).collect();
             check(&influence, &grid, &full);
             let rows: Vec<f64> =
@@ -73,7 +73,7 @@ fn fft_and_direct_summation_agree_for_tables_without_any_symmetry() {
             let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
             let mut values: Vec<f64> = (0..4 * cx * cy).map(|_| random.next() - 0.5).collect();
             values[cy * 2 * cx + cx] = 3.0;
-            // the row -cy and the column -cx never matter, whatever stands there
+            // The row -cy and the column -cx are not read.
             values[..2 * cx].fill(f64::NAN);
             values.iter_mut().step_by(2 * cx).for_each(|v| *v = f64::INFINITY);
             let influence = Coefficients::from(Table::new(cx, cy, &values, &grid).unwrap());
@@ -83,8 +83,8 @@ fn fft_and_direct_summation_agree_for_tables_without_any_symmetry() {
     }
 }
 
-/// Rows and columns are transformed in the places of vectors or one by one, and lengths are of many kinds: all numbers of columns and many
-/// lengths, in both precisions. The bounds are those of [`check`] and of `a_single_precision_product_has_single_precision`.
+/// Rows and columns are transformed in lanes or one by one, and there are many kinds of lengths: all numbers of columns and many lengths, in both
+/// precisions. The bounds are those of [`check`] and of `a_single_precision_product_has_single_precision`.
 #[test]
 fn any_number_of_columns_and_either_precision_agree_with_direct_summation() {
     let mut random = Random(7);
@@ -146,13 +146,13 @@ fn a_single_precision_product_has_single_precision() {
     let operator = Operator::<f32>::new(&influence, &grid, &Threads::One).unwrap();
     let mut u = vec![0f32; grid.len()];
     operator.apply(&single, &mut u, &mut operator.workspace().unwrap());
-    // 16 rounding errors of 6e-8 along the transforms
+    // 16 rounding errors of 6e-8 along the transforms.
     for (a, b) in u.iter().zip(&exact) {
         assert!((f64::from(*a) - b).abs() <= 1e-6 * largest(&exact));
     }
 }
 
-/// A table of which `c(k)` and `c(-k)` differ by a part 2 skew, the offsets from `(-cx, -cy)` on.
+/// A table in which `c(k)` and `c(-k)` differ by a relative 2 skew, with offsets from `(-cx, -cy)`.
 fn skew_table(grid: &Grid, skew: f64, random: &mut Random) -> Table {
     let (cx, cy) = (grid.mx as i64, grid.my as i64);
     let mut values: Vec<f64> = (0..4 * cx * cy).map(|_| random.next()).collect();
@@ -168,7 +168,7 @@ fn skew_table(grid: &Grid, skew: f64, random: &mut Random) -> Table {
     Table::new(grid.mx, grid.my, &values, grid).unwrap()
 }
 
-/// What a symmetric table lacks of symmetry is less than the rounding of single precision: there it takes half the memory.
+/// If a table is symmetric to the rounding of single precision, its product in single precision takes half the memory.
 #[test]
 fn in_single_precision_a_table_symmetric_to_round_off_has_a_real_spectrum() {
     let mut random = Random(5);
@@ -193,7 +193,7 @@ fn in_single_precision_a_table_symmetric_to_round_off_has_a_real_spectrum() {
                 bytes.push(operator.bytes());
             }
         }
-        // One column or row is symmetric and even at once, but for the skew.
+        // One column or row is both symmetric and even, up to the skew.
         if mx > 2 && my > 2 {
             assert!(bytes[..2].iter().all(|symmetric| 10 * symmetric < 7 * bytes[2]), "{grid:?}: {bytes:?}");
             assert_eq!(bytes[2], bytes[3], "{grid:?}");

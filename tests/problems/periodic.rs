@@ -1,4 +1,4 @@
-//! Effect `period`: the coefficients against their spectrum, Westergaard's wavy contact, full contact, and the limit of a long period.
+//! Effect `period`: the coefficients compared with their symbol, Westergaard's wavy contact, full contact, and the limit of a long period.
 
 use std::f64::consts::PI;
 
@@ -26,8 +26,8 @@ fn periodic(grid: &Grid, directions: (bool, bool)) -> Periodic {
     Periodic::new(HalfSpace::new(grid.dx, grid.dy, 1.0), directions, grid).unwrap()
 }
 
-/// `sum over n of (-1)^n f(n)` from n = 0, f smooth and falling: Cohen, Rodriguez Villegas & Zagier (2000), algorithm 1; the error
-/// is 5.8^-24 of the sum.
+/// `sum over n of (-1)^n f(n)` from n = 0, for f smooth and falling: Cohen, Rodriguez Villegas & Zagier (2000), algorithm 1. The error is 5.8^-24 of
+/// the sum.
 fn alternating(f: impl Fn(f64) -> f64) -> f64 {
     const TERMS: i32 = 24;
     let d = (3.0 + 8f64.sqrt()).powi(TERMS);
@@ -46,7 +46,7 @@ fn over_aliases(a: f64, f: impl Fn(f64) -> f64) -> f64 {
     alternating(|n| f(a + n) / (a + n)) + alternating(|n| f(1.0 - a + n) / (1.0 - a + n))
 }
 
-/// The transform of the exact coefficients at the wave (jx, jy): `sum over aliases of 2 c pi/|q| sinc sinc`, c pi = 1.
+/// The symbol of the exact coefficients at the wave (jx, jy): `sum over aliases of 2 c pi/|q| sinc sinc`, c pi = 1.
 fn exact_spectrum(grid: &Grid, jx: usize, jy: usize) -> f64 {
     let (a, b) = (jx as f64 / grid.mx as f64, jy as f64 / grid.my as f64);
     let q = |a: f64, b: f64| 2.0 * PI * (a / grid.dx).hypot(b / grid.dy);
@@ -78,7 +78,7 @@ fn with_two_periods_the_coefficients_have_the_exact_spectrum() {
                         sum += periodic.at(kx as i64, ky as i64) * phase.cos();
                     }
                 }
-                // Coefficients have some 1e-14 of the largest images' sum, and n of them are added.
+                // Coefficients have errors of some 1e-14 of the largest images' sum, and n of them are added.
                 let exact = exact_spectrum(&grid, jx, jy);
                 let scale = periodic.at(0, 0) * grid.len() as f64;
                 assert!((sum - exact).abs() <= 1e-13 * scale, "{grid:?} ({jx}, {jy}): {sum}, exact {exact}");
@@ -114,7 +114,7 @@ fn with_one_period_they_are_the_sum_of_images_and_their_mean_is_that_of_plane_st
             let scale = along_x.at(0, 0);
             assert!((mean - exact).abs() <= 1e-13 * scale, "{grid:?} {ky}: {mean}, exact {exact}");
             for kx in 0..mx as i64 {
-                // 40000 images on either side, less those of (0, 0): what is left is of second order, x^2/(N L)^2.
+                // 40000 images on either side, less those of (0, 0): the error is of second order, x^2/(N L)^2.
                 let images = (1..=40_000).rev().map(|n| n * mx as i64);
                 let sum: f64 = images
                     .map(|n| {
@@ -152,11 +152,11 @@ fn products_are_those_of_the_direct_sum_for_every_length() {
     }
 }
 
-/// Westergaard (1939; Johnson section 13.2): `h = d (1 - cos(2 pi x/L))`, mean pressure pm < p* = pi E* d/L, contact |x| <= a with
-/// `sin^2(pi a/L) = pm/p*`, and `p = 2 pm cos(pi x/L)/sin^2(pi a/L) sqrt(sin^2(pi a/L) - sin^2(pi x/L))`.
+/// Westergaard (1939; Johnson section 13.2): `h = d (1 - cos(2 pi x/L))`, mean pressure pm < p* = pi E* d/L, contact |x| <= a with `sin^2(pi a/L) =
+/// pm/p*`, and `p = 2 pm cos(pi x/L)/sin^2(pi a/L) sqrt(sin^2(pi a/L) - sin^2(pi x/L))`.
 fn westergaard(m: usize, share: f64, along_x: bool) -> (f64, f64) {
     let (length, d): (f64, f64) = (3.0, 0.01);
-    // Across the waves one element will do, as long as a period: nothing depends on its size.
+    // Across the waves one element as long as a period suffices: results do not depend on its size.
     let grid = match along_x {
         true => Grid::new(m, 1, length / m as f64, length).unwrap(),
         false => Grid::new(1, m, length, length / m as f64).unwrap(),
@@ -185,8 +185,8 @@ fn westergaards_wavy_contact() {
         for m in [256, 1024, 4096] {
             let (pressure, area) = westergaard(m, share, along_x);
             let in_contact = m as f64 * 2.0 * share.sqrt().asin() / PI;
-            // The area is whole elements, two of which are cut by the edges. The pressure is a root of the distance from the edge:
-            // within the last elements it is off by the root of their size, in the rms by 1 part in their number; measured 0.1 to 0.6 parts.
+            // The area is a number of elements, two of which the edges cut. The pressure has a square root at the edge, so that errors of the last
+            // elements are the root of their size: an rms of 0.1 to 0.6 over the number of elements.
             assert!(area <= 2.0 / in_contact, "{m}, {share}: area off by {area}");
             assert!(pressure <= 1.0 / in_contact, "{m}, {share}: pressures off by {pressure}, {in_contact}");
             if m == 4096 {
@@ -198,8 +198,8 @@ fn westergaards_wavy_contact() {
 
 #[test]
 fn full_contact_of_a_wavy_surface() {
-    // h = d cos(qx x) cos(qy y) is flattened by p - mean = -d |q|/2 E* cos cos (Johnson 13.3), on elements but for sinc sinc and the
-    // aliases: so the exact spectrum stands in for 2/|q|.
+    // h = d cos(qx x) cos(qy y) is flattened by p - mean = -d |q|/2 E* cos cos (Johnson 13.3). On elements there are factors sinc sinc and aliases:
+    // so the exact symbol replaces 2/|q|.
     let (mx, my) = (24, 18);
     let grid = Grid::new(mx, my, 0.5, 0.5).unwrap();
     let wave =
@@ -214,7 +214,7 @@ fn full_contact_of_a_wavy_surface() {
             solve(&scene, &Options { method, tolerance: 1e-10, ..Options::default() }).unwrap();
         assert_eq!(stop, Outcome::Converged, "{method:?}");
         assert_eq!(report.measures.contact_count, grid.len());
-        // The mean plane does not move: the approach is the mean distance. To the tolerance of the residual, relative to d.
+        // The mean plane does not move: the approach is the mean distance, to the tolerance relative to d.
         assert!(
             (report.measures.approach - lift).abs() <= 1e-9 * amplitude,
             "{method:?}: {}",
@@ -225,12 +225,12 @@ fn full_contact_of_a_wavy_surface() {
             assert!((p - exact).abs() <= 1e-8 * peak, "{method:?}, element {i}: {p}, exact {exact}");
         }
     }
-    // From 0.8 of the peak on contact is not full any more.
+    // Below 0.8 of the peak contact is not full.
     let partial = Scene { load: Load::Force(0.75 * peak * area), ..scene };
     let (_, _, report) = solve(&partial, &Options::default()).unwrap();
     assert!(report.measures.contact_count < grid.len());
-    // The approach that was found, prescribed, finds the same force: to 1e-5, for the tolerance is 1e-6 and near full contact small
-    // changes of the approach are large ones of the force.
+    // The approach of this result, prescribed, gives the same force: to 1e-5, because the tolerance is 1e-6 and near full contact the force is
+    // sensitive to the approach.
     let by_approach = Scene { load: Load::Approach(report.measures.approach), ..partial };
     let (_, stop, again) = solve(&by_approach, &Options { tolerance: 1e-9, ..Options::default() }).unwrap();
     assert_eq!(stop, Outcome::Converged);
@@ -240,9 +240,8 @@ fn full_contact_of_a_wavy_surface() {
 
 #[test]
 fn a_period_much_longer_than_the_contact_is_as_good_as_none() {
-    // A ball, contact radius a, in the middle of a period L: neighbours displace its contact evenly but for a^2/L^2 of their
-    // displacement, F/(pi L) times a lattice sum of order 4, to be compared with approach = 3 F/(4 a): the error is of order
-    // (a/L)^3 with a constant below 10.
+    // A ball, with contact radius a, in the middle of a period L. The displacement by the images is uniform over the contact up to a^2/L^2. It is
+    // F/(pi L) times a lattice sum of order 4, compared with an approach of 3 F/(4 a): the error is of order (a/L)^3 with a constant below 10.
     let m = 96;
     let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
     let h: Vec<f64> = (0..grid.len())
@@ -261,7 +260,7 @@ fn a_period_much_longer_than_the_contact_is_as_good_as_none() {
         let (found, stop, _) = solve(&scene(grid, &h, directions, load), &options).unwrap();
         assert_eq!(stop, Outcome::Converged);
         for (a, b) in found.state().p.iter().zip(&free.state().p) {
-            // At the edge of contact the pressure is a root: elements there may change by the root of that error.
+            // At the edge of contact the pressure has a square root: elements there may change by the root of that error.
             assert!(
                 (a - b).abs() <= largest * (10.0 * (radius / m as f64).powi(3)).sqrt(),
                 "{directions:?}: {a}, free {b}"
@@ -273,7 +272,7 @@ fn a_period_much_longer_than_the_contact_is_as_good_as_none() {
     }
 }
 
-/// A rough surface of `m` by `my` elements, the same wherever its origin is.
+/// A rough periodic surface of `mx` by `my` elements.
 fn rough(mx: usize, my: usize) -> Vec<f64> {
     let mut random = Random(12345);
     let mut h = vec![0.0; mx * my];
@@ -304,8 +303,8 @@ fn moving_the_origin_moves_the_solution_and_no_count_of_elements_is_refused() {
             assert_eq!(stop, Outcome::Converged, "{mx} x {my} {load:?}");
             let (again, stop, _) = solve(&scene(grid, &moved, (true, true), load), &options).unwrap();
             assert_eq!(stop, Outcome::Converged);
-            // A relative residual of 1e-9 in displacements: pressures of the shortest waves are off by up to that times the
-            // condition number, about the count of elements across; 1e-6 leaves a factor.
+            // With a relative residual of 1e-9 in displacements pressures of the shortest waves have errors of up to that times the condition number,
+            // about the number of elements across; 1e-6 includes a margin.
             for i in 0..h.len() {
                 let change = (again.state().p[i] - solver.state().p[shift(i)]).abs();
                 assert!(change <= 1e-6 * report.measures.max_pressure, "{mx} x {my} {load:?}: {change}");
@@ -318,7 +317,7 @@ fn moving_the_origin_moves_the_solution_and_no_count_of_elements_is_refused() {
 
 #[test]
 fn the_iteration_needs_no_more_products_than_without_a_period() {
-    // A circulant of the period itself is the operator, but for the contact area: measured 9 to 16 products; without a period 9 to 15.
+    // The circulant of the period is the operator, except for the contact area: 9 to 16 products, without a period 9 to 15.
     let (mx, my) = (128, 128);
     let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
     let h = rough(mx, my);
@@ -348,7 +347,7 @@ fn coarser_grids_have_the_coefficients_that_their_elements_have() {
             let anew = periodic(&grid, directions);
             let largest = anew.at(0, 0);
             for (kx, ky) in (0..grid.len() as i64).map(|i| (i % grid.mx as i64, i / grid.mx as i64)) {
-                // What 12 Chebyshev nodes leave, see src/influence/periodic.rs, and sums over up to 1300 images.
+                // The error of 12 Chebyshev nodes (src/influence/periodic.rs), and of sums over up to 1300 images.
                 let (value, exact) = (coefficients.at(kx, ky), anew.at(kx, ky));
                 assert!((value - exact).abs() <= 1e-12 * largest, "{grid:?} ({kx}, {ky}): {value} {exact}");
             }
@@ -373,7 +372,7 @@ fn what_a_period_cannot_do_is_refused_by_name() {
     refuse(&by_force, Method::Multigrid, &["MULTIGRID", "period"]);
     refuse(&by_force, Method::FullMultigrid, &["FULL_MULTIGRID", "period"]);
     refuse(&scene(grid, &h, (false, false), Load::Force(1.0)), Method::Auto, &["period", "0"]);
-    // An element without a surface carries nothing: then even a deep approach has one solution.
+    // An element without a surface carries no pressure: then even a deep approach has a solution.
     let mut hole = h.clone();
     hole[27] = f64::INFINITY;
     let (_, stop, report) =

@@ -1,5 +1,5 @@
-//! Two periods by approaches at and beyond the mean of h: contact areas that are given, and pressures that are limited, allow them. Conditions are
-//! tested with direct sums.
+//! Two periods with approaches at and beyond the mean of h, which fixed contact areas and pressure limits allow. Conditions are checked with direct
+//! sums.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -19,7 +19,7 @@ fn scene(h: &[f64], approach: f64) -> Scene<'_> {
     }
 }
 
-/// h with the mean 0.
+/// A surface with the mean 0.
 fn surface() -> Vec<f64> {
     let h = rough(M, 4, 5);
     let mean = h.iter().sum::<f64>() / h.len() as f64;
@@ -51,7 +51,7 @@ fn a_given_contact_area_needs_no_gap() {
     }
 }
 
-/// Of all elements in contact any force fits, at one approach only.
+/// If all elements are in contact, any force is possible, at one approach only.
 #[test]
 fn a_given_contact_area_that_is_full_takes_a_force() {
     let h = surface();
@@ -71,7 +71,7 @@ fn a_given_contact_area_that_is_full_takes_a_force() {
     assert!(report.measures.approach.abs() <= options.tolerance * 2.0, "{}", report.measures.approach);
 }
 
-/// Elements at their limit leave the mean distance to the others.
+/// Elements at their limit do not follow the mean distance: the others have it.
 #[test]
 fn limits_give_way_beyond_the_mean() {
     let h = surface();
@@ -92,7 +92,7 @@ fn limits_give_way_beyond_the_mean() {
                 PressureLimit(Each::PerElement(limits)) => limits[i],
             };
             let scale = (0..p.len()).map(|i| (h[i] - approach).powi(2)).sum::<f64>().sqrt();
-            // The tolerance, of all elements together.
+            // The tolerance, which one element may have alone.
             for i in 0..p.len() {
                 let e = (h[i] - approach + u[i]) / scale;
                 assert!(p[i] >= 0.0 && p[i] <= most(i), "{what}: {} of {}", p[i], most(i));

@@ -1,5 +1,5 @@
-//! Effect `pressure_limit`: the conditions of both sides with a direct sum, nothing where the limit is not reached, forces that
-//! cannot be carried, and an independent method.
+//! Effect `pressure_limit`: the conditions of both sides with a direct sum, no effect if the limit is not reached, forces that cannot be carried, and
+//! an independent method.
 
 use super::dense;
 use crate::support::run;
@@ -38,7 +38,7 @@ fn assert_holds(scene: &Scene<'_>, solver: &Solver, report: &Report, what: &str)
     if let Some(Layer(Each::Uniform(c))) = scene.layer {
         u.iter_mut().zip(&state.p).for_each(|(u, p)| *u += c * p);
     }
-    // The tolerance of 1e-9 is in the rms over some 1000 elements, one of which may have it all: 32 times that.
+    // The tolerance of 1e-9 is for the rms over some 1000 elements, one of which may have all of it: a factor of 32.
     let allowed = 32.0 * 1e-9 * u.iter().copied().fold(0.0, f64::max);
     let mut count = 0;
     for (i, u) in u.iter().enumerate() {
@@ -132,7 +132,7 @@ fn up_to_the_greatest_force_and_not_beyond() {
     assert!(message.contains("pressure_limit") && message.contains(&format!("{greatest}")), "{message}");
 }
 
-/// Every second square of elements carries little.
+/// Every second square of elements has a low limit.
 #[test]
 fn checkerboards_of_limits_carry_nearly_the_greatest_force() {
     let grid = Grid::new(32, 32, 0.05, 0.05).unwrap();
@@ -148,7 +148,7 @@ fn checkerboards_of_limits_carry_nearly_the_greatest_force() {
     }
 }
 
-/// A flat plane fits a flat plane whatever carries the force evenly, but no element may be above its limit.
+/// Between flat planes any distribution carries the force, but no element may be above its limit.
 #[test]
 fn flat_planes_do_not_end_above_a_limit() {
     let grid = Grid::new(8, 8, 1.0, 1.0).unwrap();
@@ -188,7 +188,7 @@ fn with_a_layer_and_with_a_period() {
     }
 }
 
-/// Uniform in [0, 1): splitmix64.
+/// Uniform random numbers in [0, 1): splitmix64.
 fn noise(n: usize, seed: u64) -> Vec<f64> {
     let mut state = seed;
     let mut next = || {
@@ -200,7 +200,7 @@ fn noise(n: usize, seed: u64) -> Vec<f64> {
     (0..n).map(|_| next()).collect()
 }
 
-/// Bodies so stiff that displacements at the limit are smaller than what heights differ by: nearly who touches is at its limit.
+/// Bodies so stiff that displacements at the limit are smaller than differences of heights: nearly all elements in contact are at their limit.
 #[test]
 fn forces_on_white_noise_from_soft_to_nearly_rigid() {
     let grid = Grid::new(35, 48, 0.1, 0.4).unwrap();
@@ -227,8 +227,8 @@ fn forces_on_white_noise_from_soft_to_nearly_rigid() {
     }
 }
 
-/// An uneven layer on a coated body, from nothing to ten thousand times as compliant as that: A's diagonal is as uneven, which the
-/// preconditioner, a circulant, does not know. Of coatings there is no multigrid.
+/// An uneven layer on a coated body, with up to ten thousand times its compliance: the diagonal of A is uneven, and the preconditioner, a circulant,
+/// does not include this. Multigrid excludes coatings.
 #[test]
 fn forces_on_an_uneven_layer() {
     let grid = Grid::new(6, 3, 0.6, 0.6).unwrap();
@@ -261,7 +261,7 @@ fn every_method_and_a_handle_find_the_same() {
     for method in [Method::Norm, Method::Multigrid, Method::FullMultigrid, Method::ProjectedCg] {
         assert!(close(&run(&scene, &tight(method)).0.state().p), "{method:?}");
     }
-    // The next solve, without and with a limit, from nothing and from the last.
+    // The next solve, without and with a limit, without a guess and from the last result.
     let mut solver = Solver::new(&scene, &tight(Method::Auto)).unwrap();
     solver.solve(&scene, &tight(Method::Auto), None, None).unwrap();
     let plain = Scene { pressure_limit: None, ..scene.clone() };
@@ -275,7 +275,7 @@ fn every_method_and_a_handle_find_the_same() {
         assert_holds(&scene, &solver, &report, "handle");
         assert!(close(&solver.state().p));
     }
-    // Stopped early, pressures are still within the limit.
+    // After an early stop pressures are still within the limit.
     let (_, stop, _) = solve(&scene, &Options { max_cycles: 1, tolerance: 1e-13, ..Options::default() })
         .map(|(s, stop, r)| {
             assert!(s.state().p.iter().all(|p| (0.0..=0.12).contains(p)));
@@ -313,8 +313,8 @@ fn what_is_no_limit_is_refused_by_name() {
     assert!(error.contains("FIXED") && error.contains("pressure_limit"), "{error}");
 }
 
-/// A limit is a bound inside the iteration: at most three times the products of the plain scene, measured 1.1 to 2.8. On one scene of 42 iterations by
-/// approach stand still for nine times, and it takes 47.6 for 15.3. Counts, not times. What limits cost on 140 scenes prints `examples/pressure_limits`.
+/// A limit is a bound inside the iteration: it takes 1.1 to 2.8 times the work units of the plain scene. One scene takes 3.1 times, because its
+/// approach does not move for nine of 42 iterations. Counts, not times. `examples/pressure_limits` prints the costs of limits on 140 scenes.
 #[test]
 fn a_limit_costs_at_most_three_times_the_plain_scene_but_for_one() {
     let mut beyond = 0;

@@ -1,7 +1,7 @@
-//! What holds for every scene, tried on random ones: the contact conditions, monotonicity, least energy, symmetry, translation,
-//! superposition. The scenes are the same at every run.
+//! Properties of every scene, on random ones: the contact conditions, monotonicity, least energy, symmetry, translation, superposition. The scenes
+//! are the same in each run.
 
-#[allow(dead_code)] // of the hard cases, the certificate
+#[allow(dead_code)] // only the certificate is used
 use crate::families::{case, certificate};
 #[allow(dead_code)]
 use case::{centre, distance, Case};
@@ -28,7 +28,7 @@ fn largest(p: &[f64]) -> f64 {
     p.iter().copied().fold(0.0, f64::max)
 }
 
-/// A grid of up to 40 x 40 elements, up to 100 times as long as wide.
+/// A grid of up to 40 x 40 elements, with elements up to 100 times as long as wide.
 fn grids() -> impl Strategy<Value = Grid> {
     (1..40usize, 1..40usize, -2.0..2.0f64, -6..6i32).prop_map(|(mx, my, aspect, size)| {
         let (size, ratio) = (10f64.powi(size), 10f64.powf(0.5 * aspect));
@@ -42,7 +42,7 @@ fn bodies() -> impl Strategy<Value = Bodies> {
         .prop_map(|(first, second, nu, mu)| Bodies { shear_modulus: [first, second], poisson_ratio: [nu, mu] })
 }
 
-/// Balls, waves, noise and holes in any mixture, of depth 1.
+/// Balls, waves, noise and holes in any mixture, with a depth of 1.
 #[derive(Clone, Debug)]
 struct Surface {
     curvature: (f64, f64),
@@ -74,7 +74,7 @@ impl Surface {
                 *h = f64::INFINITY;
             }
         }
-        // Somewhere there is a surface.
+        // At least one element has a surface.
         if h.iter().all(|h| h.is_infinite()) {
             h[0] = 0.0;
         }
@@ -82,7 +82,7 @@ impl Surface {
     }
 }
 
-/// A scene pressed by an approach between hardly and very much.
+/// A scene with an approach from slight to very large.
 fn scenes() -> impl Strategy<Value = Case> {
     (grids(), surfaces(), bodies(), -3.0..1.0f64, -9..9i32).prop_map(|(grid, surface, bodies, depth, scale)| {
         let scale = 10f64.powi(scale);
@@ -93,7 +93,7 @@ fn scenes() -> impl Strategy<Value = Case> {
     })
 }
 
-/// More of the same load.
+/// The case with a larger load.
 fn more(case: &Case, factor: f64) -> Case {
     let load = match case.load {
         Load::Approach(approach) => {
@@ -119,7 +119,7 @@ proptest! {
     fn more_approach_is_more_force_and_more_area(case in scenes(), factor in 1.01..3.0f64) {
         let (less, more) = (solved(&case), solved(&more(&case, factor)));
         prop_assert!(more.report.measures.force > less.report.measures.force);
-        // Elements at the rim are in contact or not to within the tolerance.
+        // The contact of elements at the rim depends on the tolerance.
         let lost = (0..less.p.len()).filter(|&i| less.p[i] > 1e-5 * largest(&less.p) && !more.contact[i]).count();
         prop_assert!(more.report.measures.contact_count >= less.report.measures.contact_count || lost == 0);
     }
@@ -137,7 +137,7 @@ proptest! {
                 let options = Options { method, max_cycles, tolerance: TIGHT, ..Options::default() };
                 let found = run_with(&case, &options).expect("a solve");
                 let measures = assert_sound(&case, "some cycles", &found);
-                // What the tolerance and the rounding are worth: e is that part of h - approach, and the energy half its work.
+                // The effect of tolerance and rounding: e is this part of h - approach, and the energy is half its work.
                 let slack = (2.0 * TIGHT + measures.round_off) * exact.abs();
                 prop_assert!(measures.energy >= exact - slack, "{method:?}: {} below {exact}", measures.energy);
             }
@@ -152,7 +152,7 @@ proptest! {
         let case = Case { h, ..case };
         let found = solved(&case);
         for i in 0..found.p.len() {
-            // Two residuals of 1e-9, times the condition of A on these grids (below 300 with elements 100 times as long as wide).
+            // Two residuals of 1e-9, times the condition number of A (below 300 with elements 100 times as long as wide).
             prop_assert!((found.p[i] - found.p[mirror(i)]).abs() <= 1e-6 * largest(&found.p), "element {i}");
         }
     }
@@ -166,7 +166,7 @@ proptest! {
         bodies in bodies(), curvature in (0.05..0.5f64, 0.05..0.5f64), depth in 0.05..0.4f64, x in 0..50usize, y in 0..40usize,
     ) {
         let grid = Grid::new(80, 70, 0.1, 0.1).expect("a grid");
-        // A ball on 30 x 30 elements, at (x, y); there is nothing elsewhere.
+        // A ball on 30 x 30 elements, at (x, y); other elements have no surface.
         let ball = |x: usize, y: usize| {
             let inside = |i: usize, start: usize| (start..start + 30).contains(&i);
             let at = |i: usize, start: usize| 0.1 * (i as f64 - start as f64 - 14.5);
@@ -181,7 +181,7 @@ proptest! {
         let (here, there) = (solved(&ball(0, 0)), solved(&ball(x, y)));
         for i in (0..grid.len()).filter(|i| i % 80 < 30 && i / 80 < 30) {
             let moved = there.p[i + y * 80 + x];
-            // Two residuals of 1e-9, times the condition of A on these grids (below 100).
+            // Two residuals of 1e-9, times the condition number of A on these grids (below 100).
             prop_assert!((here.p[i] - moved).abs() <= 1e-7 * largest(&here.p), "element {i}: {} and {moved}", here.p[i]);
         }
     }
@@ -205,13 +205,13 @@ proptest! {
         };
         let alone = [force(&with(first, far), depth), force(&with(far, second), depth)];
         let both = force(&with(first, second), depth);
-        // Each is pressed down by the other: u = F/(pi E* distance), contacts being at most 1 wide and 14 apart.
+        // Each is displaced by the other: u = F/(pi E* distance). Contacts are at most 1 wide and 14 apart.
         let pressed = |other: f64| other / (std::f64::consts::PI * 12.0);
         let less = [
             force(&with(first, far), depth - pressed(alone[1])),
             force(&with(far, second), depth - pressed(alone[0])),
         ];
-        // The sharp tip that stands for "none" carries a little as well.
+        // The sharp tip in the place of the other body carries a little as well.
         let tip = force(&with(far, far), depth);
         prop_assert!(both <= alone[0] + alone[1], "{both} of {alone:?}");
         prop_assert!(both >= less[0] + less[1] - 2.0 * tip, "{both} for at least {less:?}");

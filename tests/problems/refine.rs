@@ -16,7 +16,7 @@ fn finer(grid: &Grid, parts: usize) -> Grid {
     Grid::new(grid.mx * parts, grid.my * parts, grid.dx / d, grid.dy / d).expect("a grid")
 }
 
-/// Largest difference of the refined samples from the samples on the finer grid.
+/// The largest difference of the refined samples from samples on the finer grid.
 fn error(mx: usize, my: usize, parts: usize, value: impl Fn(f64, f64) -> f64 + Copy) -> f64 {
     let grid = Grid::new(mx, my, 1.0 / mx as f64, 0.7 / my as f64).expect("a grid");
     let refined = refine(&sampled(&grid, value), &grid, (parts, parts), (false, false)).expect("memory");
@@ -24,8 +24,8 @@ fn error(mx: usize, my: usize, parts: usize, value: impl Fn(f64, f64) -> f64 + C
     refined.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-// Round-off: half an element outside the last centre the weights' moduli sum to 6 in each direction, values are of order 1:
-// 36 times some units of 1.1e-16.
+// Round-off: half an element outside the last centre the absolute values of the weights sum to 6 in each direction, and values are of order 1: 36
+// times some units of 1.1e-16.
 const ROUND_OFF: f64 = 2e-14;
 
 #[test]
@@ -40,7 +40,8 @@ fn polynomials_up_to_the_number_of_centres_are_reproduced() {
     assert!(error(7, 5, 4, |x, _| x.powi(4)) > 1e-5);
 }
 
-/// Slopes that jump have infinite pressures. The largest steps of the slopes, over those of a parabola's, fall with the parts of an element.
+/// Slopes that jump have infinite pressures. The largest steps of the slopes, relative to those of a parabola, fall with the number of parts of an
+/// element.
 #[test]
 fn slopes_do_not_jump_between_the_elements() {
     let grid = Grid::new(12, 1, 1.0, 1.0).expect("a grid");
@@ -91,7 +92,7 @@ fn an_element_alone_is_flat_and_so_are_the_outer_halves_of_two() {
     assert_eq!(finite(&h), [0.75, 1.0, 1.5, 1.75, 0.75, 1.0, 1.5, 1.75]);
 }
 
-/// The values of a grid, moved by some elements, where those beyond an end come in at the other.
+/// The values of a grid, moved by some elements with periodic wrapping.
 fn rolled(values: &[f64], grid: &Grid, (x, y): (usize, usize)) -> Vec<f64> {
     let of = |i: usize| values[grid.index((i % grid.mx + x) % grid.mx, (i / grid.mx + y) % grid.my)];
     (0..grid.len()).map(of).collect()
@@ -114,7 +115,7 @@ fn one_period_is_refined_alike_wherever_it_begins() {
     }
 }
 
-/// A line through rough heights leaves their range half an element beyond the last one before a hole. Where nothing was measured nothing carries.
+/// A linear extrapolation of rough heights beside a hole exceeds their range by half a step. It must not carry the load.
 #[test]
 fn rough_heights_beside_holes_stay_near_the_heights() {
     let grid = Grid::new(24, 20, 1.0, 1.0).expect("a grid");
@@ -125,11 +126,11 @@ fn rough_heights_beside_holes_stay_near_the_heights() {
     }
     let refined = refine(&h, &grid, (8, 8), (true, true)).expect("memory");
     let lowest = |of: &[f64]| of.iter().copied().fold(INF, f64::min);
-    // Lines wherever there is a neighbour reach -0.69. Four heights that happen to look smooth go on, and cubics between heights leave their range: -0.2.
+    // Extrapolation by lines would reach -0.69. Four smooth heights are extrapolated, and cubics exceed the range between heights: -0.2.
     assert!(lowest(&refined) > lowest(&h) - 0.35, "{} and {}", lowest(&refined), lowest(&h));
 }
 
-/// A cubic through rough heights is far outside their range half an element beyond the last one, and would carry the load.
+/// A cubic extrapolation of rough heights is far outside their range half an element beyond the last one, and would carry the load.
 #[test]
 fn the_ends_of_a_rough_surface_stay_near_its_heights() {
     let grid = Grid::new(16, 12, 1.0, 1.0).expect("a grid");
@@ -143,6 +144,6 @@ fn the_ends_of_a_rough_surface_stay_near_its_heights() {
     };
     let (inside, ends): (Vec<usize>, Vec<usize>) = (0..fine.len()).partition(|i| !at_end(*i));
     let lowest = |of: &[usize]| of.iter().map(|i| refined[*i]).fold(INF, f64::min);
-    // Four heights that happen to look smooth go on by half of their last step. Cubics everywhere reach -2.3.
+    // Four smooth heights are extrapolated by half of their last step. Cubic extrapolation would reach -2.3.
     assert!(lowest(&ends) > lowest(&inside) - 0.5, "{} and {}", lowest(&ends), lowest(&inside));
 }

@@ -1,5 +1,5 @@
-//! Effect `row_tables`: the half-space's tables are no effect, products are those of the direct sum, tables that scale rows have the
-//! solution of plain ones, and the conditions hold with the direct sum, symmetric or not.
+//! Effect `row_tables`: the half-space's tables are no effect, products equal direct sums, tables with scaled rows have the solution of plain ones,
+//! and the conditions hold with the direct sum, symmetric or not.
 
 use crate::support::run;
 use contact_normal::grid::Grid;
@@ -24,7 +24,7 @@ fn half_space(grid: &Grid) -> impl Fn(usize, usize, i64) -> f64 {
     move |jy, iy, kx| half_space.at(kx, iy as i64 - jy as i64)
 }
 
-/// Numbers in [0, 1) that look random.
+/// Pseudo-random numbers in [0, 1).
 fn random(i: u64) -> f64 {
     let mut x = i.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -32,7 +32,7 @@ fn random(i: u64) -> f64 {
     ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// `u = A p` term by term, and the sum of the terms' magnitudes.
+/// `u = A p` term by term, and the sum of the absolute values of the terms.
 fn direct(grid: &Grid, tables: &RowTables, p: &[f64]) -> (Vec<f64>, f64) {
     let (mut u, mut largest) = (vec![0.0; grid.len()], 0.0_f64);
     for (i, u) in u.iter_mut().enumerate() {
@@ -58,11 +58,11 @@ fn tight(method: Method) -> Options {
     Options { method, tolerance: 1e-10, ..Options::default() }
 }
 
-/// The contact conditions from what is returned, with the direct sum; `give` is a layer's compliance.
+/// The contact conditions from the returned arrays, with the direct sum; `give` is the compliance of a layer.
 fn assert_conditions(scene: &Scene<'_>, solver: &Solver, give: impl Fn(usize) -> f64, what: &str) {
     let (state, h) = (solver.state(), scene.undeformed_distance);
     let (u, _) = direct(&scene.grid, scene.row_tables.as_ref().unwrap(), &state.p);
-    // The residual of 1e-10 may be all in one of some 300 elements in contact.
+    // One of some 300 elements in contact may have all of the residual of 1e-10.
     let allowed = 20.0 * 1e-10 * u.iter().copied().fold(0.0, f64::max);
     let mut counts = [0, 0];
     for i in (0..h.len()).filter(|&i| h[i].is_finite()) {
@@ -150,7 +150,7 @@ fn tables_of_the_half_space_are_no_effect() {
                 assert_eq!(found.state().contact, expected.state().contact, "{load:?} {method:?}");
                 assert_eq!(found.state().at_limit, expected.state().at_limit, "{load:?} {method:?}");
                 assert!(pressure_limit.is_none() || found.state().at_limit.contains(&true));
-                // Coarse coefficients are means, not those of larger elements; and there is no window or direct solve.
+                // Coarse coefficients are means, not those of larger elements, and there is no window and no direct solve.
                 let (with, without) = (with.count.matrix_products, without.count.matrix_products);
                 assert!(with <= without + without / 2 + 3, "{load:?} {layer:?} {method:?}: {with} products, {without}");
             }
@@ -158,10 +158,10 @@ fn tables_of_the_half_space_are_no_effect() {
     }
 }
 
-/// `c_jy(iy, k) = d(jy) d(iy) c(k, iy - jy)` and h - approach times d: e is times d, and p over it.
+/// `c_jy(iy, k) = d(jy) d(iy) c(k, iy - jy)`, and h - approach times d: then e is multiplied by d, and p is divided by d.
 #[test]
 fn rows_in_other_units_have_the_same_solution() {
-    // Plain, it would be solved on a window around the contact area.
+    // Without row tables this scene is solved on a window around the contact area.
     let grid = Grid::new(75, 61, 0.5, 0.4).unwrap();
     let h: Vec<f64> = bump(&grid).iter().map(|h| h - 0.9).collect();
     let d = |iy: usize| 1.0 + 0.8 * (0.3 * iy as f64).sin();
@@ -176,15 +176,14 @@ fn rows_in_other_units_have_the_same_solution() {
         let (found, _) = run(&scene, &tight(method));
         assert_eq!(found.state().contact, expected.state().contact);
         for (i, (a, b)) in found.state().p.iter().zip(&expected.state().p).enumerate() {
-            // As above, and d between 0.2 and 1.8.
+            // The tolerance above, with d between 0.2 and 1.8.
             assert!((a * d(i / grid.mx) - b).abs() <= 1e-6 * largest, "{method:?} {i}: {a} {b}");
         }
         assert_conditions(&scene, &found, |_| 0.0, "rows in other units");
     }
 }
 
-/// Normals that turn along y, as of a wheel in a groove: what is displaced along one of them by a pressure along the other is the cosine
-/// of what it would be.
+/// Normals that rotate along y, as for a wheel in a groove: the displacement along one normal by a pressure along another has a factor of the cosine.
 fn turning(grid: &Grid) -> RowTables {
     let c = half_space(grid);
     let angle = |iy: usize| 1.2 * iy as f64 / grid.my as f64;
@@ -209,7 +208,7 @@ fn the_conditions_hold_with_the_direct_sum() {
                     Some(Layer(Each::PerElement(c))) => c[i],
                 };
                 assert_conditions(&scene, &solver, give, &format!("{load:?} {layer:?} {method:?}"));
-                // As of the plain scene on such a grid, or with conjugate gradients without preconditioner.
+                // Counts are those of the plain scene, or of conjugate gradients without a preconditioner.
                 assert!(
                     method == Method::Norm || report.count.matrix_products <= 60,
                     "{} products",
@@ -225,7 +224,7 @@ fn what_is_not_symmetric_is_solved_too() {
     let grid = Grid::new(22, 19, 0.5, 0.4).unwrap();
     let h = bump(&grid);
     let c = half_space(&grid);
-    // Even in x or not, of rows that answer differently.
+    // Tables that are even in x or not, with different rows.
     let uneven = |jy: usize, iy: usize, kx: i64| c(jy, iy, kx) * (1.0 + 0.02 * iy as f64 + 0.01 * kx as f64);
     let even = |jy: usize, iy: usize, kx: i64| c(jy, iy, kx) * (1.0 + 0.02 * iy as f64);
     for (row_tables, is_even) in [(tables(&grid, uneven), false), (tables(&grid, even), true)] {
@@ -240,7 +239,7 @@ fn what_is_not_symmetric_is_solved_too() {
             assert!(error.to_string().contains("not symmetric"), "{error}");
         }
     }
-    // Symmetric, and not even in x: the turned table is at -k.
+    // Symmetric but not even in x: the transposed table is at -k.
     let leaning = |jy: usize, iy: usize, kx: i64| c(jy, iy, kx) * (1.0 + 0.002 * (iy as f64 - jy as f64) * kx as f64);
     let row_tables = tables(&grid, leaning);
     assert_eq!((row_tables.is_even_in_x(), row_tables.is_symmetric(&grid)), (false, true));
@@ -260,8 +259,8 @@ fn coarser_tables_of_the_half_space_are_near_those_of_larger_elements() {
     let exact = half_space(&coarse);
     for (jy, iy, kx) in (0..6 * 6 * 7).map(|k| (k / 42, k / 7 % 6, k as i64 % 7)) {
         let (mean, exact) = (means.coefficient(jy, iy, kx), exact(jy, iy, kx));
-        // Of unit squares the potentials at offsets (0, 0), (1, 0), (1, 1), (2, 0) are 3.525, 1.038, 0.73, 0.505: the mean is 6.33 at
-        // offset 0 where 7.05 is exact, and 2.165 beside it where 2.076 is.
+        // For unit squares the potentials at offsets (0, 0), (1, 0), (1, 1), (2, 0) are 3.525, 1.038, 0.73, 0.505. The mean is 6.33 at offset 0,
+        // where 7.05 is exact, and 2.165 at offset 1, where 2.076 is.
         let allowed = if (jy, kx) == (iy, 0) { 0.13 } else { 0.07 };
         assert!((mean / exact - 1.0).abs() <= allowed, "({jy}, {iy}, {kx}): {mean} {exact}");
         assert_eq!(mean, means.coefficient(jy, iy, -kx));
@@ -280,7 +279,7 @@ fn a_fixed_contact_area_and_handles() {
     let fixed = Options { active_set: ActiveSet::Fixed, ..tight(Method::Auto) };
     let mut solver = Solver::new(&scene, &fixed).unwrap();
     let guess = Some(Guess { pressure: &pressure, contact: &contact });
-    // A later scene may name the tables again, or not: they belong to the set-up.
+    // A later scene may name the tables or not, because they belong to the set-up.
     for scene in [&scene, &plain] {
         let (stop, _) = solver.solve(scene, &fixed, guess, None).unwrap();
         assert_eq!(stop, Outcome::Converged);
@@ -299,7 +298,7 @@ fn a_fixed_contact_area_and_handles() {
     assert!(error.to_string().contains("row_tables"), "{error}");
 }
 
-/// The solver holds the tables, and twice their transforms: in double precision, and in single for the iteration.
+/// The solver holds the tables and their symbols twice: in double precision, and in single precision for the iteration.
 #[test]
 fn reported_bytes_hold_the_tables() {
     let grid = Grid::new(32, 48, 0.5, 0.4).unwrap();
@@ -308,6 +307,6 @@ fn reported_bytes_hold_the_tables() {
     let (_, report) = run(&scene, &tight(Method::Auto));
     let (finest, share) = (48 * 48, 8 * 32 + 8 * 32 + 4 * 32);
     assert!(report.bytes >= finest * share, "{} bytes", report.bytes);
-    // A sixth more for coarser grids, half the rest for what grows with the number of elements.
+    // A sixth more for coarser grids; the rest of the factor is for arrays of the grid.
     assert!(report.bytes <= finest * share * 3 / 2, "{} bytes", report.bytes);
 }

@@ -1,4 +1,5 @@
-//! Errors of what converges slowly, against a finer grid: stresses at the surface that overtake those below, forces of steady rolling.
+//! Errors of quantities that converge slowly, compared with a finer grid: stresses at the surface that overtake those below, forces of steady
+//! rolling.
 
 use contact_normal::grid::Grid;
 use contact_normal::progress::Progress;
@@ -18,7 +19,7 @@ fn on(m: usize, surface: Surface) -> (Grid, Vec<f64>) {
     (grid, (0..grid.len()).map(|i| surface(at(i % m), at(i / m))).collect())
 }
 
-/// The last row of `quantity` on m x m elements, with `coarser` grids before.
+/// The last row of `quantity` on m x m elements, with `coarser` grids.
 fn last(scene: &Scene<'_>, m: usize, surface: Surface, (quantity, coarser): (Quantity, usize)) -> QuantityRow {
     let (grid, h) = on(m, surface);
     let scene = Scene { grid, undeformed_distance: &h, ..scene.clone() };
@@ -26,7 +27,7 @@ fn last(scene: &Scene<'_>, m: usize, surface: Surface, (quantity, coarser): (Qua
     *rows.last().expect("a row")
 }
 
-/// The error is at least 0.3 of the distance to a grid four times finer, and at most `most` times of it; or it is not known.
+/// Asserts that the error is between 0.3 and `most` times the difference from a grid with four times the elements in each direction, or unknown.
 fn assert_covered(scene: &Scene<'_>, (m, surface): (usize, Surface), quantity: Quantity, most: f64) {
     let row = last(scene, m, surface, (quantity, 2));
     let truth = last(scene, 4 * m, surface, (quantity, 0)).value.expect("a value");
@@ -54,7 +55,7 @@ fn ellipse(x: f64, y: f64) -> f64 {
     0.6 * (c * x + s * y).powi(2) + 2.2 * (c * y - s * x).powi(2)
 }
 
-/// A roller along y whose ends begin at 0.3.
+/// A roller along y with rounded ends that begin at |y| = 0.3.
 fn rounded_ends(x: f64, y: f64) -> f64 {
     2.0 * x * x + 0.2 * y * y + 30.0 * (y.abs() - 0.3).max(0.0).powi(2)
 }
@@ -68,7 +69,7 @@ fn rolling() -> Friction<'static> {
     Friction { prescribed, motion: Motion::SteadyRolling, spin: 0.01, ..Friction::new(0.3) }
 }
 
-/// The stress at the tip is infinite, as a logarithm: a lucky last change must not hide it.
+/// The stress at the tip grows as a logarithm: a small last change must not hide this.
 #[test]
 fn the_tip_of_a_cone() {
     let scene = scene(Bodies::same(0.5, 0.3), Load::Approach(0.03));
@@ -78,8 +79,8 @@ fn the_tip_of_a_cone() {
     }
 }
 
-/// Below a limit of the pressures the stress is settled, to 1e-4, and at the trailing edge of the slip another one grows: on four times the elements it
-/// is the largest.
+/// With a pressure limit the stress below the surface has converged to 1e-4. At the trailing edge of the slip another stress grows, which is the
+/// largest with four times the elements.
 #[test]
 fn a_limit_beside_friction() {
     let limit = Some(PressureLimit(Each::Uniform(0.06)));
@@ -104,8 +105,8 @@ fn steady_rolling_of_unlike_bodies() {
     assert!(row.error.is_some(), "{row:?}");
 }
 
-/// The pressure has a peak where the ends begin, and the largest stress lies an element below it. On 64 x 64 elements that stress is 10 % off and has changed by
-/// 2 %; the peak itself has no estimate there.
+/// The pressure has a peak where the rounded ends begin, and the largest stress is one element below it. On 64 x 64 elements this stress has an error
+/// of 10 % and has changed by 2 %; the peak itself has no estimate there.
 #[test]
 fn a_search_for_the_stress_below_a_peak_resolves_the_peak() {
     let (target, load) = (0.03, Load::Approach(0.14));
@@ -124,7 +125,7 @@ fn a_search_for_the_stress_below_a_peak_resolves_the_peak() {
     assert!((of(m) - truth).abs() <= target * truth, "{m} elements: {} for {truth}", of(m));
 }
 
-/// All of a ball slips. Finer grids might have elements that stick, so that a stick area of 0 has no error: it was taken for exact.
+/// A ball in full slip. Elements may stick on finer grids, so that a stick area of 0 has no error and is not exact.
 #[test]
 fn a_stick_area_of_zero_is_not_known_to_be_exact() {
     let bowl: Surface = |x, y| 0.5 * (x * x + y * y);
@@ -144,7 +145,7 @@ fn a_stick_area_of_zero_is_not_known_to_be_exact() {
     assert_ne!(found.stop, Outcome::Converged, "{}", found.reason);
 }
 
-/// The solver that a search returns is one as any other: a surface that jumps between its elements has the errors of a new solve.
+/// The solver that a search returns is like any other: for a surface that jumps between its elements it has the errors of a new solve.
 #[test]
 fn the_solver_of_a_search_has_the_errors_of_a_new_one() {
     let (grid, h) = on(32, ellipse);
@@ -162,7 +163,7 @@ fn the_solver_of_a_search_has_the_errors_of_a_new_one() {
     assert!(new.error.force > Some(0.0) && again.error.force == new.error.force, "{:?} {:?}", again.error, new.error);
 }
 
-/// A roller that ends at |y| = 0.38, anywhere between the elements, with its pressures at their limit beside the ends.
+/// A roller that ends at |y| = 0.38, at any place between the elements, with its pressures at their limit near the ends.
 fn ends_at_38(x: f64, y: f64) -> f64 {
     if y.abs() < 0.38 {
         0.5 * x * x
@@ -171,7 +172,7 @@ fn ends_at_38(x: f64, y: f64) -> f64 {
     }
 }
 
-/// Grids may agree by chance on where the roller ends. On 100 x 100 elements it ends on edges of elements.
+/// Grids may agree by chance on the end of the roller. On 100 x 100 elements it is an edge of elements.
 #[test]
 fn a_limit_beside_ends_between_elements() {
     let scene = scene(Bodies::same(1.0, 0.3), Load::Approach(0.04));
@@ -200,7 +201,8 @@ fn a_limit_beside_ends_between_elements() {
     assert!(met >= 5, "{met}");
 }
 
-/// Steps of stresses and of the stiffness are told after the cycles of their grid, by one clock and one count, with the residual of the solve.
+/// Steps of stresses and of the stiffness are reported after the cycles of their grid, with continuous seconds and counts, and with the residual of
+/// the solve.
 #[test]
 fn steps_of_values_are_told_after_cycles() {
     let (grid, h) = on(24, ellipse);

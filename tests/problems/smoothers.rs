@@ -1,4 +1,4 @@
-//! A fast Gauss-Seidel sweep makes the iterates of the dense one, term by term.
+//! A fast Gauss-Seidel sweep has the iterates of the dense one, term by term.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace, Table};
@@ -8,7 +8,7 @@ use contact_normal::threads::Threads;
 use super::dense;
 use crate::families::case::Random;
 
-/// The sweep as its formula says, in the order of `elements`.
+/// The sweep by its formula, in the order of `elements`.
 fn dense_sweep(influence: &Coefficients, grid: &Grid, p: &mut [f64], b: &[f64], relaxation: f64, elements: &[usize]) {
     for &i in elements {
         let mut sum = 0.0;

@@ -1,4 +1,4 @@
-//! Starts beside a pressure limit: elements at their limit stay there, so that a solution is one at once, and cut solves go on.
+//! Starts with elements at their pressure limit: they stay there, so that a solution needs no cycles, and cut solves continue.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Each, Load, PressureLimit, Scene};
@@ -16,7 +16,7 @@ fn bumpy() -> (Grid, Vec<f64>) {
     (grid, (0..grid.len()).map(of).collect())
 }
 
-/// The scenes: by approach and by force, with limits of a half and four fifths of the largest pressure.
+/// Visits the scenes: by approach and by force, with limits of a half and four fifths of the largest pressure.
 fn each(visit: impl Fn(&Scene<'_>, &str)) {
     let (grid, h) = bumpy();
     let scene = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.05));
@@ -30,7 +30,7 @@ fn each(visit: impl Fn(&Scene<'_>, &str)) {
     }
 }
 
-/// All elements at their limit were free at the start: a start from the solution took as many cycles as one from rest.
+/// The elements of a guess that are at their limit begin there, so that a start from the solution takes no cycles.
 #[test]
 fn a_solution_is_one_at_once() {
     each(|scene, what| {
@@ -40,7 +40,7 @@ fn a_solution_is_one_at_once() {
             let (pressure, contact) = (solved.state().p.clone(), solved.state().contact.clone());
             assert!(solved.state().at_limit.iter().filter(|at_limit| **at_limit).count() > 10, "{what}");
             let inside: Vec<bool> = pressure.iter().map(|p| *p > 0.0).collect();
-            // As C callers give it, with elements at their limit in contact, and as the state has it.
+            // The area of C callers, in which elements at their limit are in contact, and that of the state.
             for contact in [&inside, &contact] {
                 let options = Options { tolerance: 1e-6, initial_guess: InitialGuess::Given, ..tight };
                 let mut solver = Solver::new(scene, &options).expect("a solver");
@@ -58,7 +58,7 @@ fn a_solution_is_one_at_once() {
     });
 }
 
-/// Solves that few cycles cut go on where they ended, and end.
+/// Solves that are cut by few cycles continue from their results, and converge.
 #[test]
 fn solves_that_are_cut_go_on() {
     each(|scene, what| {

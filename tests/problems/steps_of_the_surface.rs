@@ -1,4 +1,4 @@
-//! Steps of the undeformed distance: pressures beside them are singular. One period has none where it begins.
+//! Steps of the undeformed distance: pressures beside them are singular. The beginning of a period is no step.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, Options, Outcom
 
 const BODIES: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
 
-/// A ball of radius 10 on m x m elements, which lies `deep` lower beyond `edge`.
+/// A ball of radius 10 on m x m elements, lower by `deep` beyond `edge`.
 fn ball(m: usize, edge: f64, deep: f64) -> (Grid, Vec<f64>) {
     let d = 6.0 / m as f64;
     let at = |k: usize| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
@@ -28,7 +28,7 @@ fn largest((grid, h): &(Grid, Vec<f64>)) -> (Option<f64>, f64) {
     (report.error.max_pressure, report.measures.max_pressure)
 }
 
-/// The peak of a ball in its middle was believed, though pressures at the edge grow without end on finer grids.
+/// The peak in the middle of the ball must not have an estimate, because pressures at the edge grow without bound on finer grids.
 #[test]
 fn the_largest_pressure_has_no_estimate_where_contact_ends_at_a_step() {
     for edge in [1.1, 1.15, 1.2, 1.25] {
@@ -42,7 +42,7 @@ fn the_largest_pressure_has_no_estimate_where_contact_ends_at_a_step() {
     assert!((outside / plain - 1.0).abs() < 0.1, "{outside} for {plain}");
 }
 
-/// The results of a search on one period, moved by some elements, are the same.
+/// The results of a search on one period do not depend on its beginning.
 #[test]
 fn a_search_does_not_depend_on_where_a_period_begins() {
     let (mx, my) = (12, 10);

@@ -1,4 +1,4 @@
-//! Points on the edges of elements at the surface: refused, however their coordinates were rounded.
+//! Points on the edges of elements at the surface are refused, however their coordinates are rounded.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -24,7 +24,7 @@ fn assert_refused(sizes: (f64, f64), point: [f64; 3]) {
     }
 }
 
-/// The ways in which a program comes to the k-th edge.
+/// Ways in which a program may compute the k-th edge.
 fn edges(k: usize, d: f64) -> [f64; 7] {
     let (step, far) = (d, 1e3 * M as f64 * d / 7.0);
     let added = (0..k).fold(0.0, |sum, _| sum + step);
@@ -50,7 +50,7 @@ fn edges_and_corners_are_refused_to_within_rounding() {
                     assert_refused(sizes, [x, 3.4 * dy, z]);
                     assert_refused(sizes, [x, edges(5, dy)[1], z]);
                 }
-                // Within an element, below the surface, and beside the grid there is a value.
+                // Points within an element, below the surface, and outside the grid have a value.
                 for point in
                     [[x + 0.5 * dx, 3.4 * dy, 0.0], [x, 3.4 * dy, 1e-3 * dx], [x, -0.4 * dy, 0.0], [x, 40.3 * dy, 0.0]]
                 {
@@ -66,7 +66,7 @@ fn edges_and_corners_are_refused_to_within_rounding() {
         for k in [0, 1, 3, 11, 19, 20] {
             edges(k, dy).into_iter().for_each(|y| assert_refused(sizes, [4.7 * dx, y, 0.0]));
         }
-        // A millionth of an element beside an edge is beside it.
+        // A point a millionth of an element off an edge is not on it.
         assert!(stress(sizes, [3.000001 * dx, 3.4 * dy, 0.0]).is_ok());
     }
 }

@@ -1,4 +1,4 @@
-//! A solve that must converge.
+//! A solve that must converge, and the conditions of a result.
 
 use contact_normal::scene::Scene;
 use contact_normal::solver::{solve, Options, Outcome, Report, Solver};
@@ -10,7 +10,7 @@ pub fn run(scene: &Scene<'_>, options: &Options) -> (Solver, Report) {
     (solver, report)
 }
 
-/// The conditions of an answer to the default tolerance, u being the caller's own A p.
+/// Asserts the conditions to the default tolerance; u is the caller's own A p.
 pub fn assert_conditions(h: &[f64], approach: f64, p: &[f64], u: &[f64], what: &str) {
     let (mut residual, mut distance, mut penetration, mut count) = (0.0, 0.0, 0.0, 0.0);
     for i in 0..p.len() {

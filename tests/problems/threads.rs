@@ -1,6 +1,6 @@
-//! Whole solves have the same bits for any number of threads: pressures, displacements, contact area, approach, and the way there.
+//! Whole solves have the same bits for any number of threads: pressures, displacements, contact area, approach, and iterations.
 
-#[allow(dead_code)] // the benchmark's cases, of which this takes some
+#[allow(dead_code)] // some of the benchmark's cases are used
 use crate::performance as case;
 
 use case::{ellipse, rough, wheel_rail, Case};
@@ -8,7 +8,7 @@ use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 use contact_normal::scene::{Load, Scene};
 use contact_normal::solver::{solve, Criterion, InitialGuess, Method, Options, Outcome, Precision, Solver};
 
-/// What a solve found, to the last bit: p, u and the approach; the contact area; cycles.
+/// The result of a solve as bits: p, u and the approach; the contact area; the number of cycles.
 type Found = (Vec<u64>, Vec<bool>, u64);
 
 fn found(solver: &Solver, cycles: u64) -> Found {
@@ -17,7 +17,7 @@ fn found(solver: &Solver, cycles: u64) -> Found {
     (values.map(|value| value.to_bits()).collect(), state.contact.clone(), cycles)
 }
 
-/// Of a cold solve, and of a next one from its result with 1 % more load.
+/// The results of a cold solve, and of a next one from it with 1 % more load.
 fn cold_and_next(scene: &Scene<'_>, options: &Options) -> [Found; 2] {
     let (mut solver, stop, report) = solve(scene, options).expect("a solve");
     assert_eq!(stop, Outcome::Converged, "{options:?}");
@@ -31,7 +31,7 @@ fn cold_and_next(scene: &Scene<'_>, options: &Options) -> [Found; 2] {
     [cold, found(&solver, report.count.cycles)]
 }
 
-/// Approach and force prescribed, all methods, 1 and 3 threads; AUTO by 2, too.
+/// With approach and force prescribed, all methods, 1 and 3 threads; AUTO also with 2.
 fn same_for_any_number_of_threads(case: &Case) {
     let (solver, _, report) = solve(&case.scene(), &Options::default()).expect("a solve");
     let loads = [Load::Approach(solver.state().approach), Load::Force(report.measures.force)];
@@ -58,19 +58,19 @@ fn same_for_any_number_of_threads(case: &Case) {
     }
 }
 
-/// So many elements that passes are shared, also on the window around C.
+/// With this number of elements passes are shared, also on the window around C.
 #[test]
 fn the_ellipse() {
     same_for_any_number_of_threads(&ellipse(280));
 }
 
-/// So many that passes are shared on the whole grid, of which there is no window.
+/// With this number of elements passes are shared on the whole grid, and there is no window.
 #[test]
 fn the_rough_surface() {
     same_for_any_number_of_threads(&rough(160));
 }
 
-/// So many that passes are shared on the whole grid only.
+/// With this number of elements passes are shared on the whole grid only.
 #[test]
 fn wheel_and_rail() {
     same_for_any_number_of_threads(&wheel_rail("y0_10kN", 2));

@@ -1,4 +1,4 @@
-//! Bodies that relax, against closed forms: maps of one step, relaxation, creep under a step of force, Lee and Radok's pressure, Ting's cycle.
+//! Viscoelastic bodies compared with closed forms: maps of one step, relaxation, creep under a step of force, Lee and Radok's pressure, Ting's cycle.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Branches, Load, Scene, Visco};
@@ -6,7 +6,7 @@ use contact_normal::solver::{Options, Outcome, Report, Solver};
 use contact_normal::visco::{Form, Map, Series};
 use std::f64::consts::PI;
 
-/// A body of two branches: `G(t) = 1 + 4 exp(-t/.3) + 3 exp(-t/3)`, nu = 1/2.
+/// A body with two branches: `G(t) = 1 + 4 exp(-t/.3) + 3 exp(-t/3)`, nu = 1/2.
 pub const MODULI: [f64; 2] = [4.0, 3.0];
 pub const TIMES: [f64; 2] = [0.3, 3.0];
 pub const G: f64 = 8.0;
@@ -20,7 +20,7 @@ fn modulus(t: f64) -> f64 {
     relaxation(G, (&MODULI, &TIMES), t)
 }
 
-/// The creep function of that body, by the roots of the quadratic: `s J = D/P`, `P = Gi D + sum of Gk s (s + 1/tl)`.
+/// The creep function of this body, by the roots of the quadratic: `s J = D/P`, `P = Gi D + sum of Gk s (s + 1/tl)`.
 fn creep(t: f64) -> f64 {
     let [b0, b1] = TIMES.map(|t| 1.0 / t);
     let rest = G - MODULI[0] - MODULI[1];
@@ -31,13 +31,13 @@ fn creep(t: f64) -> f64 {
     1.0 / G + roots.iter().map(|s| -part(*s) * (s * t).exp_m1()).sum::<f64>()
 }
 
-/// Displacements under w, and w under displacements, in steps.
+/// Displacements by a constant w, or w for constant displacements, after these steps.
 fn held(series: &Series, steps: &[f64], form: Form) -> f64 {
     let (mut q, mut after, mut w0) = (vec![0.0; series.len()], vec![0.0; series.len()], 0.0);
     let mut last = 0.0;
     for (k, dt) in [0.0].iter().chain(steps).enumerate() {
         let map = Map::new(series, *dt, form);
-        // Held after the first step, in which there is no time.
+        // Constant after the first step, which has no duration.
         let w = if form == Form::Creep { 1.0 } else { (1.0 - map.history(&q, w0)) / map.compliance() };
         let u = map.compliance() * w + map.history(&q, w0);
         assert!(k > 0 || (u - 1.0).abs() + (w - 1.0).abs() <= 1e-15);
@@ -59,7 +59,7 @@ fn held_displacements_relax_and_held_pressures_creep_exactly_in_any_steps() {
     }
 }
 
-/// `integral from 0 to t of G(t - s) J(s) ds = t`, of series with many branches, near ones, weak ones, and of fluids.
+/// `integral from 0 to t of G(t - s) J(s) ds = t`, for series with many branches, close ones, weak ones, and for fluids.
 #[test]
 fn creep_is_the_inverse_of_relaxation() {
     let many: Vec<f64> = (0..20).map(|k| 10.0_f64.powi(k - 10)).collect();
@@ -73,11 +73,11 @@ fn creep_is_the_inverse_of_relaxation() {
         (1.0, &weak[..13].iter().map(|_| 1.0 / 13.0).collect::<Vec<f64>>(), &many[..13], 30.0),
     ] {
         let series = Series::new(g, moduli, times).expect("a series");
-        // Trapezia of u = v^12, which pushes nodes towards both ends: all derivatives of the integrand are tame there.
+        // The trapezoidal rule with nodes that are dense at both ends, where the derivatives of the integrand are large.
         let (n, mut sum) = (4000, 0.0);
         for i in 1..n {
             let x = i as f64 / n as f64;
-            // s/t = 1/(1 + exp(-2 sinh(pi z))): double exponential.
+            // s/t = 1/(1 + exp(-2 sinh(pi z))): the double exponential rule.
             let z = 6.0 * (x - 0.5);
             let (part, late) =
                 (1.0 / (1.0 + (-2.0 * (PI * z).sinh()).exp()), 1.0 / (1.0 + (2.0 * (PI * z).sinh()).exp()));
@@ -90,7 +90,7 @@ fn creep_is_the_inverse_of_relaxation() {
     }
 }
 
-/// A ball of radius 1 on a body that relaxes, 48 x 48 elements.
+/// A ball of radius 1 on a viscoelastic body, 48 x 48 elements.
 fn ball() -> (Grid, Vec<f64>) {
     let (m, half) = (48, 0.3);
     let d = 2.0 * half / m as f64;
@@ -101,7 +101,7 @@ fn ball() -> (Grid, Vec<f64>) {
 
 const BODIES: Bodies = Bodies { shear_modulus: [f64::INFINITY, G], poisson_ratio: [0.0, 0.5] };
 
-/// The steps of a history of loads, the first of them at time 0: (time, report, largest pressure).
+/// The steps of a history of loads, the first of them at time 0: report and largest pressure of each.
 fn history(times: &[f64], load: impl Fn(f64) -> Load, form: Option<Form>) -> Vec<(Report, f64)> {
     let (grid, h) = ball();
     let options = Options { tolerance: 1e-9, ..Options::default() };
@@ -122,7 +122,7 @@ fn history(times: &[f64], load: impl Fn(f64) -> Load, form: Option<Form>) -> Vec
     found
 }
 
-/// Steps to an end, from 0 on.
+/// The times of steps from 0 to an end.
 fn times(step: f64, end: f64) -> Vec<f64> {
     (0..=(end / step).round() as usize).map(|k| k as f64 * step).collect()
 }
@@ -140,7 +140,7 @@ fn at_a_constant_approach_the_force_relaxes_as_the_modulus() {
             assert!((part / (modulus(*t) / G) - 1.0).abs() <= 1e-9, "{t}: {part}");
         }
         let largest = found[1..].iter().fold(0.0, |largest: f64, (r, _)| largest.max(r.visco.unwrap().step_error));
-        // Held pressures would be off by 2.9e-2 and 1.6e-3 in the force: of what creeps the estimate sees that.
+        // With constant pressures the errors of the force would be 2.9e-2 and 1.6e-3: the estimate of CREEP.
         assert!(largest > 1e-4 && largest < 0.1, "{step}: {largest}");
     }
 }
@@ -154,7 +154,7 @@ fn under_a_step_of_force_the_approach_follows_the_creep_function() {
         let found = history(&times, |_| Load::Force(force), form);
         let exact = |t: f64| (1.5 * force * creep(t) / 8.0).powf(2.0 / 3.0);
         let of = |k: usize| found[k].0.measures.approach / exact(times[k]) - 1.0;
-        // Beyond what the grid is off at once.
+        // Less the error of the grid at time 0.
         let at = (0.4 / step).round() as usize;
         (of(at) - of(0), of(times.len() - 1) - of(0), found[at].0.visco.unwrap().step_error)
     };
@@ -163,7 +163,7 @@ fn under_a_step_of_force_the_approach_follows_the_creep_function() {
         let (at, end, estimate) = off(step, None);
         assert!(at.abs() <= 2e-4 && end.abs() <= 5e-4, "creep, {step}: {at} {end}");
         let (other, ..) = off(step, Some(Form::Relaxation));
-        // Second order. The estimate of the step is not below what all steps are off together.
+        // Of second order. The estimate of the step is not below the error of all steps together.
         assert!(other.abs() <= 0.35 * relaxation && other.abs() <= 2e-2, "relaxation, {step}: {other}");
         assert!(estimate >= at.abs(), "{step}: {estimate} for {at}");
         let (first, ..) = off(step, Some(Form::BackwardEuler));
@@ -173,7 +173,7 @@ fn under_a_step_of_force_the_approach_follows_the_creep_function() {
     }
 }
 
-/// What all steps together may be off, beside what much shorter steps say: of second order for both forms, of first for Euler's.
+/// The estimated error of all steps together, compared with much shorter steps: of second order for both forms, of first order for Euler's.
 #[test]
 fn the_error_in_time_is_that_which_shorter_steps_find() {
     let speed = 1.6 * RADIUS * RADIUS;
@@ -209,7 +209,7 @@ fn the_error_in_time_is_that_which_shorter_steps_find() {
     }
 }
 
-/// Composite Gauss of three points: `integral from a to b`.
+/// The integral from a to b by the composite three-point Gauss rule.
 fn integral(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (n, x) = (400, 0.6_f64.sqrt());
     let width = (b - a) / n as f64;
@@ -222,7 +222,7 @@ fn integral(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
         .sum()
 }
 
-/// Lee and Radok (1960): `p(0, t) = 4/(pi (1 - nu) R) [G(t) a(0) + integral of G(t - s) a'(s) ds]` by halves, for one body, under a step of force.
+/// Lee and Radok (1960): `p(0, t) = 4/(pi (1 - nu) R) [G(t) a(0) + integral of G(t - s) a'(s) ds]`, halved for one body, under a step of force.
 #[test]
 fn the_pressure_in_the_middle_is_that_of_lee_and_radok() {
     let force = 8.0 * G / (3.0 * 0.5) * RADIUS.powi(3);
@@ -235,16 +235,16 @@ fn the_pressure_in_the_middle_is_that_of_lee_and_radok() {
     let grid = found[0].1 / exact(0.0) - 1.0;
     let off = found[40].1 / exact(2.0) - 1.0;
     println!("largest pressure at once {grid:.1e}, at t = 2 {off:.1e}");
-    // Hertz's pressure with the radius of the time is 11 % off.
+    // Hertz's pressure with the current radius has an error of 11 %.
     assert!(grid.abs() <= 3e-3 && (off - grid).abs() <= 3e-3, "{grid} {off}");
 }
 
-/// Ting (1966): the ball comes with a constant speed up to t = 1 and goes back with it.
+/// Ting (1966): the ball approaches with a constant speed up to t = 1, and goes back with it.
 #[test]
 fn loading_and_unloading_are_those_of_ting() {
     let speed = 1.6 * RADIUS * RADIUS;
     let approach = |t: f64| if t <= 1.0 { speed * t } else { speed * (2.0 - t) };
-    // The time at which the radius was what it is now.
+    // The time during loading with the current radius.
     let same = |t: f64| {
         let left = |from: f64| integral(from, 1.0, |s| modulus(t - s)) - integral(1.0, t, |s| modulus(t - s));
         if left(0.0) < 0.0 {
@@ -257,7 +257,7 @@ fn loading_and_unloading_are_those_of_ting() {
         }
         low
     };
-    // s = v^2, so that nothing is singular.
+    // With s = v^2 the integrand is not singular.
     let exact = |t: f64| {
         let t1 = if t <= 1.0 { t } else { same(t) };
         let of = |v: f64| modulus(t - v * v) * 3.0 * speed.powf(1.5) * v * v;

@@ -1,4 +1,5 @@
-//! Coefficients of bodies that relax and roll steadily, against their integral, their limits, and what CONTACT printed (its example visc_cylindr; eve70a/CONTACT).
+//! Coefficients of viscoelastic bodies in steady rolling, compared with their integral, their limits, and the output of CONTACT (its example
+//! visc_cylindr; eve70a/CONTACT).
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::Table;
@@ -24,7 +25,7 @@ fn love(x: f64, y: f64, dx: f64, dy: f64) -> f64 {
     f(xp, yp) - f(xp, ym) - f(xm, yp) + f(xm, ym)
 }
 
-/// A body with one branch of half its modulus: `J(t)/J(0) = 2 - exp(-t/(2 tau))`, for a relaxation time tau.
+/// A body with half its modulus in one branch: `J(t)/J(0) = 2 - exp(-t/(2 tau))`, for a relaxation time tau.
 #[test]
 fn coefficients_are_those_of_the_integral_over_what_has_passed() {
     let (cx, cy, dx, dy, time) = (5, 3, 0.5, 0.8, 0.3);
@@ -34,7 +35,7 @@ fn coefficients_are_those_of_the_integral_over_what_has_passed() {
         let own = love(0.0, 0.0, dx, dy);
         for (kx, ky) in [(0, 0), (-1, 0), (1, 0), (-5, 0), (4, 0), (0, 1), (-1, 2), (3, -3), (-2, -2)] {
             let (x, y) = (f64::from(kx) * dx, f64::from(ky) * dy);
-            // exp(-s/L) to 1e-15, by midpoints; the slope of a is infinite at two places as a logarithm.
+            // By the midpoint rule, up to exp(-s/L) = 1e-15; the slope of a has two logarithmic singularities.
             let steps = 100_000;
             let h = 36.0 / f64::from(steps);
             let of = |k: i32| {
@@ -67,19 +68,19 @@ fn slow_bodies_are_relaxed_and_fast_ones_elastic() {
         |k: usize| love((k % 8) as f64 * 0.5 - 2.0, (k / 8) as f64 * 0.5 - 2.0, 0.5, 0.5) * 0.7 / std::f64::consts::PI;
     let own = at(4 * 8 + 4);
     for (slow, k) in of(1e-9).iter().zip(0..) {
-        // In L = 6e-10 the slope of a is at most of the order of log(1e9).
+        // Over L = 6e-10 the slope of a is at most of the order of log(1e9).
         assert!((slow - 2.0 * at(k)).abs() <= 1e-7 * own, "{k}: {slow} {}", at(k));
     }
     for (fast, k) in of(1e9).iter().zip(0..) {
-        // What is within L of 1e7 to 1e9 elements: logarithm over L.
+        // The part within L of 1e7 to 1e9 elements: a logarithm over L.
         assert!((fast - at(k)).abs() <= 1e-5 * own, "{k}: {fast} {}", at(k));
     }
 }
 
-/// The limits of both ends of the range of numbers are those of W: a where material relaxes before it moves, nothing where it is gone before it relaxes.
+/// The limits at both ends of the range of numbers: relaxed if the material relaxes before it moves, elastic if it has passed before it relaxes.
 #[test]
 fn at_the_ends_of_the_range_of_numbers_bodies_are_relaxed_or_elastic() {
-    // Half the modulus in one branch: the whole compliance at once, and twice that in the end.
+    // Half the modulus in one branch: the final compliance is twice the instantaneous one.
     let of = |speed: f64, time: f64, (dx, dy): (f64, f64)| {
         rolling_table((4, 4), (dx, dy), &[body(0.7, 2.0, &[1.0], &[time]), elastic(0.0)], speed).unwrap()
     };
@@ -103,7 +104,7 @@ fn at_the_ends_of_the_range_of_numbers_bodies_are_relaxed_or_elastic() {
             assert!((value / exact - 1.0).abs() <= 1e-13, "{speed} {time} {d} {k}: {value} {exact}");
         }
     }
-    // Only V t/dx counts, and the coefficients are a length: whatever under- or overflows on the way.
+    // Coefficients depend on V t/dx and are a length, also if intermediate values underflow or overflow.
     let middle = of(3.0, 0.2, (0.5, 0.5));
     for (speed, time, size) in
         [(1000, -900, 100), (-1000, 1000, 0), (-300, -300, -600), (500, 200, 700), (-900, 0, -900)]
@@ -116,7 +117,7 @@ fn at_the_ends_of_the_range_of_numbers_bodies_are_relaxed_or_elastic() {
     }
 }
 
-/// Of a body of whose modulus little is left the end is far, and what relaxes at once beside what does not relax is a body of less modulus.
+/// If most of the modulus relaxes, the final compliance is reached late. A fast branch with one that does not relax is a body with a smaller modulus.
 #[test]
 fn branches_far_apart_are_each_at_its_end() {
     let of = |modulus: &[f64], time: &[f64]| {
@@ -130,22 +131,22 @@ fn branches_far_apart_are_each_at_its_end() {
     }
 }
 
-/// Places between the centres that fall onto the edge of a slender element are places like others: coefficients are more than those of a body that has
-/// not relaxed, and less than the largest of one that has, of half the modulus.
+/// Places between the centres may fall onto the edge of a slender element, and have finite coefficients. They exceed those of a body before
+/// relaxation, and are below the largest ones of a relaxed body with half the modulus.
 #[test]
 fn coefficients_of_slender_elements_are_numbers() {
     for dy in [1e-3, 1e-6, 1e-9, 1e-12] {
         let table = rolling_table((2, 2), (1.0, dy), &[body(1.0, 1.0, &[0.5], &[1.0]), elastic(0.0)], 1.0).unwrap();
         for (k, value) in table.iter().enumerate() {
             let a = love((k % 4) as f64 - 2.0, dy * ((k / 4) as f64 - 2.0), 1.0, dy) / std::f64::consts::PI;
-            // The differences of the test lose digits: 1e-16 of 1 at dy = 1e-12.
+            // The differences of the test have round-off: 1e-16 of 1 at dy = 1e-12.
             let (slack, most) = (1e-3, 2.0 * love(0.0, 0.0, 1.0, dy) / std::f64::consts::PI);
             assert!(*value >= (1.0 - slack) * a && *value <= (1.0 + slack) * most, "{dy:e} {k}: {value:e} {a:e}");
         }
     }
 }
 
-/// Coefficients that are no numbers are refused, and sizes that are none.
+/// Coefficients beyond the range of numbers and invalid sizes are refused.
 #[test]
 fn coefficients_beyond_the_range_of_numbers_are_refused() {
     let refused = |compliance: f64, sizes: (f64, f64), speed: f64| {
@@ -174,8 +175,8 @@ fn what_creeps_for_ever_or_stands_still_is_refused() {
     assert!(rolling_table((2, 2), (1.0, 1.0), &still, 0.0).unwrap_err().to_string().contains("speed is 0"));
 }
 
-/// Two cylinders that relax alike to half their modulus, 99 x 1 elements, rolling at 1000 mm/s: approach, largest pressure and elements in contact
-/// as printed, and how far the force is ahead of the middle (NumPy, dense matrices).
+/// Two equal cylinders that relax to half their modulus, 99 x 1 elements, rolling at 1000 mm/s: approach, largest pressure and elements in contact
+/// equal those of CONTACT. The offset of the force from the middle is from NumPy with dense matrices.
 #[test]
 fn cylinders_that_roll_are_those_of_contact() {
     let (mx, dx, dy, nu, g) = (99, 0.16, 1000.0, 0.4, 1143.0);
@@ -195,7 +196,7 @@ fn cylinders_that_roll_are_those_of_contact() {
         assert_eq!(stop, Outcome::Converged);
         let measures = &report.measures;
         println!("{creep} {} {} {}", measures.approach, measures.max_pressure, measures.contact_count);
-        // The digits printed; with the slow one CONTACT's tail ends early, at some 1e-5.
+        // The printed digits; for slow creep CONTACT truncates the tail, an error of some 1e-5.
         assert!((measures.approach - approach).abs() <= 4e-5, "{creep}: {}", measures.approach);
         assert!((measures.max_pressure - pressure).abs() <= 0.011, "{creep}: {}", measures.max_pressure);
         assert_eq!(measures.contact_count, count);

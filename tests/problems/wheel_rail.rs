@@ -1,4 +1,4 @@
-//! Real wheel-rail contacts against the CONTACT program's pressures (computed at tolerance 1e-7).
+//! Real wheel-rail contacts compared with the pressures of the CONTACT program (computed at tolerance 1e-7).
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};

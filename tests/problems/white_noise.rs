@@ -1,5 +1,5 @@
-//! AUTO by approach on white noise: the coarse grids, whose h is a mean, see full contact and eight times the force, and what they find
-//! has to be shed. The certificates are computed with a product of the test's own.
+//! AUTO by approach on white noise. The h of coarse grids is a mean, so that they have full contact and eight times the force, which the fine grid
+//! has to release. The certificates are computed with the test's own product.
 
 use std::f64::consts::{PI, TAU};
 
@@ -8,7 +8,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
-/// Uniform in [0, 1): splitmix64.
+/// Uniform random numbers in [0, 1): splitmix64.
 fn noise(m: usize, border: usize, seed: u64) -> Vec<f64> {
     let mut state = seed;
     let mut next = || {
@@ -30,7 +30,7 @@ fn noise(m: usize, border: usize, seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// In place, a power of two values; unscaled.
+/// A transform in place of a power of two values, without scaling.
 fn transform(values: &mut [(f64, f64)], sign: f64) {
     let n = values.len();
     for i in 0..n {
@@ -98,7 +98,7 @@ fn the_product_of_this_test_is_a_convolution() {
     }
 }
 
-/// Work units of the solve, whose conditions are checked.
+/// Solves and checks the conditions; returns the work units.
 fn work_units(m: usize, border: usize, load: Load, h: &[f64]) -> f64 {
     let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
     let scene = Scene::new(grid, h, Bodies::same(1.0, 0.0), load);
@@ -114,7 +114,7 @@ fn work_units(m: usize, border: usize, load: Load, h: &[f64]) -> f64 {
     report.count.work_units
 }
 
-/// Parts of E* per element, up to where nearly all touch. Measured: 13 to 24.
+/// The mean pressure is a part of E*, up to nearly full contact: 13 to 24 work units.
 #[test]
 fn white_noise_by_force_takes_at_most_40_work_units() {
     for (seed, part) in [1e-4, 1e-3, 0.01, 0.1, 0.5].into_iter().enumerate() {
@@ -124,8 +124,8 @@ fn white_noise_by_force_takes_at_most_40_work_units() {
     }
 }
 
-/// Measured: 12 to 47. Where pressures were not scaled to the least energy after large truncations, 19 of these 66 stopped at the
-/// limit of 1000 cycles; beside a window displacements were infinite, and a NaN came back.
+/// 12 to 47 work units. Pressures are scaled to the least energy after large truncations, because these solves would not converge otherwise. Outside
+/// a window displacements must be finite.
 #[test]
 fn white_noise_by_approach_takes_at_most_80_work_units() {
     for m in [64, 100, 128, 256] {

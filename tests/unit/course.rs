@@ -1,4 +1,4 @@
-//! Errors of largest stresses, of which the one at the surface overtakes the one below.
+//! Errors of largest stresses: one at the surface may overtake one below.
 
 use super::*;
 use crate::grid::Grid;
@@ -23,13 +23,13 @@ fn course(quantity: Quantity, peaks: &[(f64, f64, f64)]) -> Course {
     course
 }
 
-/// Below 1 and settled, at the surface `1.3 - h^.5`.
+/// The stress below the surface is 1 and has converged; that at the surface is `1.3 - h^.5`.
 const OVERTAKEN: [(f64, f64, f64); 3] = [(0.99, 0.1, 0.3), (1.0, 0.1, 0.593), (1.0, 0.1, 0.8)];
 
 #[test]
 fn a_stress_at_the_surface_that_overtakes_is_counted() {
     let error = course(Quantity::MaxVonMises, &OVERTAKEN).falling(false).expect("an error").now();
-    // The rest of the surface's is at least 2.41 times its last change: it ends at 1.3.
+    // The remaining change at the surface is at least 2.41 times the last change: the limit is 1.3.
     assert!((0.29..0.45).contains(&error), "{error}");
     let error = course(Quantity::VonMisesDepth, &OVERTAKEN).falling(false).expect("an error").now();
     assert!((error - 0.1).abs() < 1e-9, "{error}");
@@ -44,7 +44,7 @@ fn one_that_stays_below_is_not() {
     assert!(error < 1e-9, "{error}");
 }
 
-/// Below the surface what does not fall yet converges; at the surface it may be infinite.
+/// A stress below the surface converges although its changes do not fall yet; one at the surface may be infinite.
 #[test]
 fn only_a_stress_at_the_surface_may_be_infinite() {
     let grows = |depth: f64| [1.0, 1.1, 1.2].map(|value| (value, depth, if depth == 0.0 { value } else { 0.1 }));
@@ -53,7 +53,7 @@ fn only_a_stress_at_the_surface_may_be_infinite() {
     assert!((0.1..0.4).contains(&error), "{error}");
 }
 
-/// The largest one has settled ten elements and more below the surface; two elements below it another one grows.
+/// The largest stress, at least ten elements below the surface, has converged; another one, two elements below, grows.
 #[test]
 fn a_stress_some_elements_below_the_surface_is_followed_too() {
     let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
@@ -62,7 +62,7 @@ fn a_stress_some_elements_below_the_surface_is_followed_too() {
         let mut course = Course::of(Quantity::MaxShear, &scene);
         for k in 0..3 {
             let mut close = [0.0; CLOSE.len()];
-            // Of limit 1.2.
+            // The limit is 1.2.
             close[5] = 1.2 - grows * 0.5f64.powi(k).sqrt();
             let peak = Peak { value: 1.0, depth: 1.0, elements: elements * 2f64.powi(k), close };
             course.add(k, Value { value: 1.0, peak: Some(peak), least: 0.0 }, 0.0);
@@ -71,11 +71,11 @@ fn a_stress_some_elements_below_the_surface_is_followed_too() {
     };
     assert!((error(0.5, 5.0) - 0.2).abs() < 1e-9, "{}", error(0.5, 5.0));
     assert_eq!(error(-0.5, 5.0), 0.0);
-    // As deep as the largest one itself on the grid before.
+    // Here the largest stress of the grid before was at this depth itself.
     assert_eq!(error(0.5, 0.5), 0.0);
 }
 
-/// Next to the surface changes are those of the root of the elements, however small the last of them is.
+/// Close to the surface changes fall as the square root of the element size, however small the last change is.
 #[test]
 fn a_largest_stress_within_an_element_is_not_believed_to_settle_at_once() {
     let near = [(0.8, 0.0, 0.8), (0.9, 0.0, 0.9), (0.901, 0.0, 0.901)];
@@ -83,7 +83,7 @@ fn a_largest_stress_within_an_element_is_not_believed_to_settle_at_once() {
     assert!((0.049..0.2).contains(&error), "{error}");
 }
 
-/// One change may be lucky: of tractions, and of stresses beside them or at a limit.
+/// One small change may be by chance: for tractions, and for stresses with tractions or at a limit.
 #[test]
 fn three_grids_are_needed_where_tractions_or_pressures_end_steeply() {
     let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
@@ -106,7 +106,7 @@ fn three_grids_are_needed_where_tractions_or_pressures_end_steeply() {
     assert_eq!(is_believed(Quantity::MeanGap, &friction, true), [true; 3]);
 }
 
-/// Of a stress some elements below the surface, unless that is deep.
+/// This holds for a stress some elements below the surface, unless it is deep.
 #[test]
 fn a_stress_below_a_pressure_that_is_not_resolved_is_not_believed() {
     let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
@@ -124,7 +124,7 @@ fn a_stress_below_a_pressure_that_is_not_resolved_is_not_believed() {
     );
 }
 
-/// Creepages that change by -154 and -99: of first order where bodies are alike; changes of unlike ones fall no faster on the way to the end.
+/// Creepages that change by -154 and -99: of first order for like bodies. For unlike bodies further changes fall no faster.
 #[test]
 fn steady_rolling_of_unlike_bodies_is_slow() {
     let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
@@ -141,7 +141,7 @@ fn steady_rolling_of_unlike_bodies_is_slow() {
     assert!((178.0..179.0).contains(&error(0.25)), "{}", error(0.25));
 }
 
-/// Three grids agree on an area of 1828 elements by chance: its outline is uncertain all the same.
+/// Three grids agree by chance on an area of 1828 elements, but its outline is uncertain.
 #[test]
 fn an_area_is_no_better_than_its_outline() {
     let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");

@@ -1,7 +1,7 @@
-//! A test effect: a Winkler foundation with memory, in series with the bodies. It is one file and one line in the list, and it is in no release.
+//! A test effect: a Winkler foundation with memory, in series with the bodies. It is one file and one line in the list, and in no release.
 //!
 //! ```text
-//! e = h - approach + A p + c p + v        c: at once;   v: later, T dv/dt + v = d p
+//! e = h - approach + A p + c p + v        c: instantaneous;   v: later, T dv/dt + v = d p
 //! v = (v of the step before + r d p)/(1 + r),   r = dt/T      implicit Euler; v = 0 in the beginning
 //! ```
 
@@ -24,7 +24,7 @@ pub struct Foundation {
     pub later: f64,
     /// r, a number.
     pub step: f64,
-    /// Whether v begins where the last step ended.
+    /// Whether v begins with that of the last step.
     pub continues: bool,
 }
 
@@ -79,7 +79,7 @@ impl Effect for Foundation {
     }
 }
 
-/// v before the step and in it.
+/// v before the step, and v in the step.
 struct Creep<'a> {
     foundation: &'a Foundation,
     before: &'a mut [f64],

@@ -1,4 +1,4 @@
-//! The test effect against a dense solution of its own, beside every other effect, and where it is refused.
+//! The test effect compared with its own dense solution, with every other effect, and its refusals.
 
 use std::f64::consts::PI;
 
@@ -26,7 +26,7 @@ fn ball() -> Vec<f64> {
     (0..MX * MY).map(|i| place(i).0.hypot(place(i).1).powi(2) * SIDE * SIDE / 4.0).collect()
 }
 
-/// The displacement at an offset by a unit pressure on an element (Love 1929), for both bodies.
+/// The displacement at an offset by a unit pressure on an element, for both bodies (Love 1929).
 fn love(kx: f64, ky: f64) -> f64 {
     let corner = |x: f64, y: f64| x * (y + x.hypot(y)).ln() + y * (x + x.hypot(y)).ln();
     let (x, y, a) = (kx * SIDE, ky * SIDE, 0.5 * SIDE);
@@ -57,7 +57,7 @@ fn dense(h: &[f64], approach: f64, c: f64) -> Vec<f64> {
     panic!("the exchange of elements does not end");
 }
 
-/// Gauss: the last column is the right-hand side. The matrix is positive definite.
+/// Gaussian elimination: the last column is the right-hand side. The matrix is positive definite.
 fn eliminate(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     let n = rows.len();
     for k in 0..n {
@@ -90,7 +90,7 @@ fn steps_are_those_of_a_dense_solution_by_every_method() {
     for method in [Method::Auto, Method::Norm, Method::ProjectedCg, Method::Multigrid, Method::FullMultigrid] {
         let options = Options { method, tolerance: 1e-9, ..Options::default() };
         let mut solver: Option<Solver> = None;
-        // What the step before left: v, and by how much that of the library may be off.
+        // The v of the last step, and its possible error in the library.
         let (mut v, mut off) = (vec![0.0; h.len()], 0.0);
         for (k, approach) in [0.05, 0.05, 0.08, 0.03].into_iter().enumerate() {
             let foundation = Foundation { continues: k > 0, ..FOUNDATION };
@@ -98,10 +98,10 @@ fn steps_are_those_of_a_dense_solution_by_every_method() {
             let solver = solver.get_or_insert_with(|| Solver::new(&scene, &options).expect("a solver"));
             let (stop, _) = solver.solve(&scene, &options, None, None).expect("a step");
             assert_eq!(stop, Outcome::Converged, "{method:?} {k}");
-            // Implicit in v: the memory and d r/(1 + r) at once.
+            // Implicit in v: the memory, and an instantaneous d r/(1 + r).
             let with_memory: Vec<f64> = h.iter().zip(&v).map(|(h, v)| h + v / (1.0 + step)).collect();
             let p = dense(&with_memory, approach, at_once + later * step / (1.0 + step));
-            // A + c is at least c, so the residual bounds how far off p is; with it is what v was off.
+            // A + c is at least c, so that the residual bounds the error of p; the error of v adds to it.
             let state = solver.state();
             let distance = norm((0..h.len()).filter(|&i| state.contact[i]).map(|i| state.h[i] - approach));
             let allowed = (1e-9 * distance + off / (1.0 + step)) / at_once + 1e-12 * norm(p.iter().copied());
@@ -114,8 +114,8 @@ fn steps_are_those_of_a_dense_solution_by_every_method() {
     }
 }
 
-/// What a result leaves of the normal conditions: by direct sums over the coefficients of the scene, with v of a step from rest and with
-/// distances `beside` by others.
+/// Asserts the normal conditions of a result: by direct sums over the coefficients of the scene, with v of a step from rest and with distances
+/// `beside` by other effects.
 fn assert_conditions(name: &str, scene: &Scene<'_>, solver: &Solver, beside: &[f64]) {
     let (state, coefficients) = (solver.state(), scene.coefficients().expect("coefficients"));
     let limit = scene.pressure_limit.map_or(f64::INFINITY, |limit| limit.0.at(0));
@@ -192,7 +192,7 @@ fn beside_every_other_effect_conditions_hold_or_it_is_refused() {
         let (solver, stop, report) = solve(scene, &Options::default()).unwrap_or_else(|e| panic!("{name}: {e}"));
         assert_eq!(stop, Outcome::Converged, "{name}");
         assert_conditions(name, scene, &solver, &vec![0.0; h.len()]);
-        // Without the foundation pressures are others, and without the other effect.
+        // The foundation changes the pressures, and so does the other effect.
         let without = Scene { foundation: None, ..scene.clone() };
         let (other, ..) = solve(&without, &Options::default()).unwrap_or_else(|e| panic!("{name}: {e}"));
         let p = &solver.state().p;
@@ -233,7 +233,7 @@ fn with_unlike_bodies_both_displace_the_distance() {
     let beside: Vec<f64> = (0..h.len()).map(by_tractions).collect();
     assert!(beside.iter().any(|u| u.abs() > 1e-4), "tractions displace nothing along the normal");
     assert_conditions("unlike bodies", &scene, &solver, &beside);
-    // Derivatives would leave the foundation out.
+    // Derivatives would not include the foundation.
     let friction = Friction { sensitivities: true, ..friction };
     let scene = Scene { friction: Some(friction), ..scene };
     let Err(Error::Unsupported(message)) = solve(&scene, &Options::default()) else { panic!("not refused") };
@@ -249,7 +249,7 @@ fn it_is_refused_where_its_properties_say_so() {
         assert!(with.iter().all(|with| message.contains(with)), "{message}");
     };
     let mut solver = Solver::new(&rest, &options).expect("a solver");
-    // No step, and none since the foundation was left out.
+    // There is no last step, or the last one was without the foundation.
     for _ in 0..2 {
         let Err(Error::InvalidArgument(message)) = solver.solve(&on, &options, None, None) else { panic!("solved") };
         refused(message, &["foundation", "creep"]);
@@ -288,7 +288,7 @@ fn a_step_that_is_refused_on_the_way_leaves_the_memory_as_it_was() {
         let mut solver = Solver::new(&scene(false, None), &options).expect("a solver");
         solver.solve(&scene(false, None), &options, None, None).expect("a step");
         if refused {
-            // More than mu N, which is known when the normal problem is solved.
+            // The force exceeds mu N, which is known only after the normal problem is solved.
             let outcome = solver.solve(&scene(true, Some(-0.05)), &options, None, None);
             assert!(matches!(outcome, Err(Error::Infeasible(_))), "{outcome:?}");
         }

@@ -33,7 +33,7 @@ fn as_many_doublings_as_the_estimates_ask_for() {
         let excess = Some(Falling { by_two, ..Falling::default() });
         assert_eq!(accuracy.next(&past(excess)), Next::Refine(doublings), "{by_two}");
     }
-    // The largest of several, and what one residual hides no grid brings back.
+    // The largest of several excesses.
     let both = Past { excesses: vec![by_four(2.0), by_four(5.0)], ..past(None) };
     assert_eq!((accuracy.next(&both), both.worst()), (Next::Refine(2), Some(5.0)));
     let unknown = Past { excesses: vec![by_four(2.0), None], ..past(None) };
@@ -58,7 +58,7 @@ fn quantities_of_several_grids_take_one_doubling_after_the_other() {
     assert_eq!(accuracy.next(&Past { leaps: false, ..past(by_four(100.0)) }), Next::Refine(1));
 }
 
-/// Of one change, which may be lucky, the next grid follows, and no end.
+/// The next grid follows from one change, which may be small by chance, but not the end of the search.
 #[test]
 fn an_error_of_too_few_grids_ends_no_search() {
     let accuracy = Accuracy::new(1e-4);
@@ -71,7 +71,7 @@ fn an_error_of_too_few_grids_ends_no_search() {
 fn limits_shorten_the_step_and_then_end_it() {
     let far = past(by_four(1e4));
     let limited = |change: fn(&mut Accuracy, u32)| {
-        // The last that is allowed for k doublings.
+        // The limits that allow k doublings.
         (1..=3).for_each(|k| {
             let mut accuracy = Accuracy::new(1e-4);
             change(&mut accuracy, k);

@@ -20,7 +20,7 @@ fn changes_and_edges_of_a_corner() {
     }
     let outline = Outline::of(&state);
     assert_eq!((outline.changes, outline.edges, outline.border, outline.rows), (2, 2, (2, 2), 2));
-    // Two runs along rows, two along columns: of 2 and 1 elements.
+    // There are two runs along rows and two along columns, with 2 and 1 elements.
     assert_eq!(outline.chord(3, (false, false)), 1.5);
     assert_eq!(outline.corrected_area(&state, 3), (3.0 - 2.0 * EXCESS_PER_CHANGE) * 2.0);
 }
@@ -41,14 +41,14 @@ fn a_circle_has_eight_changes_a_radius() {
         // The first and last row or column may be missed on either side.
         assert!((outline.changes as f64 - 8.0 * r).abs() <= 8.0, "{} of {}", outline.changes, 8.0 * r);
         assert_eq!(outline.edges, 0);
-        // M is off by 8 of 400 at most, and so are chords.
+        // The error of M is at most 8 of 400, and so is that of chords.
         let count = state.contact_count();
         assert!(
             (outline.scatter(count, (false, false)) - 1.0).abs() <= 0.02,
             "{}",
             outline.scatter(count, (false, false))
         );
-        // Four of them.
+        // Four such circles.
         let four = Outline { changes: 4 * outline.changes, ..outline };
         assert!(
             (four.scatter(4 * count, (false, false)) - 2.0).abs() <= 0.04,
@@ -58,7 +58,7 @@ fn a_circle_has_eight_changes_a_radius() {
     }
 }
 
-/// Small random contact areas with holes: sides are counted as by definition, and no more of them are straight than there are.
+/// Small random contact areas with holes: sides are counted as by definition, and at most as many are straight as there are sides.
 #[test]
 fn sides_at_holes_are_those_of_pairs_of_neighbours() {
     let mut bits = 0x9E37_79B9_7F4A_7C15_u64;
@@ -70,7 +70,7 @@ fn sides_at_holes_are_those_of_pairs_of_neighbours() {
         let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
         for _ in 0..200 {
             let mut state = State::new(grid, (Load::Approach(0.0), 0.0), &Threads::One).unwrap();
-            // Rows are often like the one above.
+            // Rows often equal the one above.
             for i in 0..mx * my {
                 state.h[i] = if draw(4) == 0 { f64::INFINITY } else { 0.0 };
                 let as_above = i >= mx && draw(8) != 0;

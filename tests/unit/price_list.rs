@@ -17,7 +17,8 @@ fn row(seconds: f64, obstacle: Option<Obstacle>) -> Price {
     }
 }
 
-/// Of the dearest row that can be reached the least seconds so far count: samples of few elements predicted a thousand seconds of three hundred.
+/// The time for samples follows from the dearest row without an obstacle, by its least predicted seconds so far, because samples of few elements may
+/// predict too many.
 #[test]
 fn the_dearest_row_pays_for_the_samples_at_its_least() {
     let mut budget = Budget::default();

@@ -18,7 +18,7 @@ fn state(load: Load, h: &[f64]) -> State {
 #[test]
 fn the_constant_carries_the_sum_wherever_pressures_are_cut() {
     for wanted in [0.0, 1e-300, 1e-12, 0.3, 2.0, 2.999, 1e9] {
-        // Pressures that enter one after the other as the constant grows: several steps, which two of Newton's do not replace.
+        // Pressures enter one after the other as the constant grows, so that two steps of Newton's method do not suffice.
         let p: Vec<f64> = (-10..10).map(|k| -f64::from(k).exp2()).chain([0.5]).collect();
         let sum = |c: f64| p.iter().map(|p| (p + c).max(0.0)).sum();
         let slope = |c: f64| p.iter().filter(|p| *p + c > 0.0).count();
@@ -30,7 +30,7 @@ fn the_constant_carries_the_sum_wherever_pressures_are_cut() {
 
 #[test]
 fn the_constant_of_a_sum_that_no_constant_reaches_is_finite() {
-    // At most 3: all at their limit of 1.
+    // The sum is at most 3, with all pressures at their limit of 1.
     let p = [0.5, 0.2, 0.1];
     let sum = |c: f64| p.iter().map(|p| (p + c).clamp(0.0, 1.0)).sum();
     let slope = |c: f64| p.iter().filter(|p| *p + c > 0.0 && *p + c < 1.0).count();
@@ -45,7 +45,7 @@ fn pressures_at_a_bound_but_for_rounding_are_at_it() {
     state.p = vec![limit * (1.0 - rest), rest, 1.0, 1e-6];
     snap(&mut state, PressureLimit(Each::Uniform(limit)));
     assert_eq!(state.p, [limit, 0.0, 1.0, 1e-6]);
-    // Without limits a small pressure is one.
+    // Without limits a small pressure does not change.
     state.p = vec![1.0, rest, 1.0, 1e-6];
     snap(&mut state, NonNegative);
     assert_eq!(state.p, [1.0, rest, 1.0, 1e-6]);
@@ -53,7 +53,7 @@ fn pressures_at_a_bound_but_for_rounding_are_at_it() {
 
 #[test]
 fn an_approach_between_held_and_touched_elements_frees_those_in_the_wrong_order() {
-    // By force, nothing in C: two elements at their limit, at distances of .1 and .4, and two without pressure, at .3 and .9.
+    // By force, with an empty C: two elements at their limit, at distances of .1 and .4, and two without pressure, at .3 and .9.
     let mut state = state(Load::Force(2.0), &[0.1, 0.4, 0.3, 0.9]);
     state.p = vec![1.0, 1.0, 0.0, 0.0];
     state.at_limit = vec![true, true, false, false];

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Coefficients of plane strain: displacements of a uniform pressure on one element, at the middles of others.
+/// Coefficients of plane strain: displacements by a uniform pressure on one element, at the centres of others.
 fn kernel(n: usize, period: bool) -> Vec<f64> {
     let antiderivative = |x: f64| if x == 0.0 { 0.0 } else { x * (x.abs().ln() - 1.0) };
     let free = |k: f64| antiderivative(k - 0.5) - antiderivative(k + 0.5) + (n as f64).ln() + 1.0;
@@ -91,7 +91,7 @@ fn forces_of_pieces_are_those_of_the_definition() {
                 let wanted = by_definition(&punches, &r, without_force);
                 let size = wanted.iter().fold(1e-300, |size: f64, z| size.max(z.abs()));
                 for i in 0..n {
-                    // Both sum some hundred terms of at most that size.
+                    // Both are sums of some hundred terms of at most this size.
                     assert!((z[i] - wanted[i]).abs() <= 1e-12 * size, "case {case}, {i}: {} {}", z[i], wanted[i]);
                 }
                 if without_force {
@@ -103,8 +103,8 @@ fn forces_of_pieces_are_those_of_the_definition() {
     }
 }
 
-/// What joined pieces displace, by direct sums: within a quarter of the energy everywhere on C (0.80 to 1.05 where every second element is in contact), and the
-/// energy known without sums is within a twentieth.
+/// The displacements by joined pieces, by direct sums, are within a quarter of the energy everywhere on C (0.80 to 1.05 if every second element is in
+/// contact). The energy without sums is accurate to a twentieth.
 #[test]
 fn joined_pieces_are_near_a_flat_punch() {
     let n = 400;

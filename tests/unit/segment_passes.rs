@@ -1,4 +1,4 @@
-//! Passes with vectors of different lengths; what leaves and enters by formulas, beside the rules of the admissible sets.
+//! Passes with lanes of different lengths; elements that leave and enter by formulas, compared with the rules of the admissible sets.
 
 use super::super::block::Terms;
 use super::super::passes::{Changes, Sum};
@@ -8,7 +8,7 @@ use crate::methods::projected_cg::formulas::*;
 use crate::methods::projected_cg::step_sums::Update;
 use crate::scene::{Each, PressureLimit};
 
-/// Some contact area, and values that differ.
+/// A contact area, and varying values.
 struct Given {
     contact: Vec<bool>,
     segments: Vec<u32>,
@@ -35,7 +35,7 @@ const UPDATES: [Update; 2] = [
     Update { alpha: 0.7, gamma: 0.2, is_corrected: true, factor: 0.5 },
 ];
 
-/// Sums with the vectors of a machine, as bits.
+/// The sums with the lanes of a machine, as bits.
 fn sums<const A: usize, const B: usize, const K: usize>(
     arch: pulp::Arch,
     block: Block<'_>,
@@ -45,7 +45,7 @@ fn sums<const A: usize, const B: usize, const K: usize>(
     arch.dispatch(Sum { block, arrays: Arrays::of(block, a, b), terms }).map(f64::to_bits).into()
 }
 
-/// What all passes leave with the vectors of a machine, as bits.
+/// The results of all passes with the lanes of a machine, as bits.
 fn by(arch: pulp::Arch, n: usize) -> Vec<Vec<u64>> {
     let Given { contact, segments, doubles: [h, u, p], singles: [t, q, z] } = &given(n);
     let (block, terms) = (Block::new(0, contact, n, segments), StepTerms { approach: 0.1 });
@@ -114,7 +114,7 @@ fn no_bit_depends_on_the_length_of_vectors() {
     }
 }
 
-/// Who leaves, by the set's rule and by what the forecast foresees.
+/// The elements that leave, by the rule of the set and by the forecast.
 fn check_who_leaves<S: AdmissibleSet>(set: S, n: usize) {
     let Given { contact, segments, doubles: [p, ..], singles: [t, d, _] } = &given(n);
     let p: Vec<f64> = p.iter().map(|p| p.abs()).collect();
@@ -151,7 +151,7 @@ fn elements_leave_by_the_rule_of_the_admissible_set() {
 
 #[test]
 fn what_is_no_number_or_at_a_bound_does_not_leave() {
-    // Pressures that the step leaves at 0, at the limit, beyond both; and no number.
+    // The step leads to pressures of 0, at the limit, and beyond both; one is no number.
     let (p, t) = ([0.5, 0.5, 0.5, 0.5, f64::NAN], [-0.5_f32, 0.5, -0.6, 0.6, 1.0]);
     let block = Block::new(0, &[true; 5], 5, &[0]);
     let (moved, set) = (Moved { alpha: 1.0, gamma: 0.0 }, PressureLimit(Each::Uniform(1.0)));
@@ -159,10 +159,10 @@ fn what_is_no_number_or_at_a_bound_does_not_leave() {
     assert_eq!(leaving(pulp::Arch::new(), block, (&p, &t, &t), wanted), [2, 3]);
 }
 
-/// Who enters after a move, by the set's rule.
+/// The elements that enter after a move, by the rule of the set.
 fn check_who_enters<S: AdmissibleSet>(set: S, n: usize) {
     let Given { contact, doubles: [h, before, _], singles: [_, q, z], .. } = &given(n);
-    // No surface here and there.
+    // Some elements have no surface.
     let h: Vec<f64> = h.iter().enumerate().map(|(i, h)| if i % 13 == 5 { f64::INFINITY } else { *h }).collect();
     let at_limit: Vec<bool> = (0..n).map(|i| S::LIMITED && !contact[i] && i % 3 == 0).collect();
     let held = if S::LIMITED { &at_limit[..] } else { &[] };
@@ -217,7 +217,7 @@ fn plain<const K: usize>(contact: &[bool], terms: impl Fn(usize) -> [f64; K]) ->
     sums
 }
 
-/// Some roundings of sums of some hundred terms of at most 1.
+/// Asserts sums of some hundred terms of at most 1, up to round-off.
 fn check<const K: usize>(found: [f64; K], expected: [f64; K], what: &str) {
     for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
         assert!((found - expected).abs() < 1e-12, "{what}, sum {k}: {found} for {expected}");

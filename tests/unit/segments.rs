@@ -3,7 +3,7 @@ use crate::lanes::{Holds, Lanes};
 
 const SIZES: [(usize, usize); 6] = [(130, 170), (1, 1), (3, 1), (7, 9), (33, 40), (8, 300)];
 
-/// Contact of single elements, of pieces, none and full.
+/// Contact areas of single elements, of pieces, empty, and full.
 fn contact_areas(n: usize) -> Vec<Vec<bool>> {
     let every = |k: usize| (0..n).map(|i| i % k == 0).collect();
     let pieces = |k: usize| (0..n).map(|i| i / k % 3 == 1).collect();
@@ -47,7 +47,7 @@ impl Becomes<1, 1> for Formula {
     }
 }
 
-/// The value is less than b, and the element no multiple of three.
+/// The elements whose value is less than b, and whose index is no multiple of three.
 impl Wanted<1> for Formula {
     fn of<S: pulp::Simd>(&self, first: usize, value: Lanes<S>, [b]: [Lanes<S>; 1]) -> Holds<S> {
         let divides = value.of_each(|lane| f64::from(u8::from((first + lane) % 3 == 0)));
@@ -55,7 +55,7 @@ impl Wanted<1> for Formula {
     }
 }
 
-/// Whole numbers, which are added without rounding, in contact; no numbers outside.
+/// Whole numbers in contact, whose sums have no round-off, and NaN outside.
 fn arrays(contact: &[bool]) -> (Vec<f64>, Vec<f32>) {
     let value = |i: usize| if contact[i] { (i * i % 17) as f64 - 5.0 } else { f64::NAN };
     (0..contact.len()).map(|i| (value(i), (i * 7 % 11) as f32 - 3.0)).unzip()

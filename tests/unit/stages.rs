@@ -1,11 +1,11 @@
-//! Cycles of the methods of a list.
+//! The share of cycles of the methods in a list.
 
 use super::{share, stages, Stage, LEAST_SHARE};
 use crate::contact::{AdmissibleSet, NonNegative};
 use crate::scene::PressureLimit;
 use crate::solver::Method;
 
-/// What each method of a list has where none of them converges.
+/// The cycles of each method of a list, if none of them converges.
 fn cycles<S: AdmissibleSet>(list: &[Stage], most: u64) -> Vec<u64> {
     let mut done = 0;
     let last = list.len() - 1;
@@ -30,11 +30,11 @@ fn every_method_of_a_list_has_its_turn() {
             }
         }
     }
-    // With limits each method has another one behind it.
+    // With limits each method is followed by another one.
     for method in [Method::Norm, Method::Multigrid, Method::FullMultigrid, Method::ProjectedCg] {
         assert_eq!(stages::<PressureLimit<'_>>(method, true, true).last(), Some(&Stage::ProjectedNewton));
     }
     let auto = stages::<NonNegative>(Method::Auto, true, false);
-    // 0.4 of what is left, and the last one has the rest.
+    // Each has 0.4 of the remaining cycles, and the last one has the rest.
     assert_eq!(cycles::<NonNegative>(auto, 1000), [400, 240, 144, 216]);
 }

@@ -1,4 +1,4 @@
-//! The kernels of subsurface stresses, near and far, against corner differences of the potentials in 256 bits.
+//! The kernels of subsurface stresses, near and far, compared with corner differences of the potentials in 256 bits.
 
 use astro_float::{BigFloat, Consts, RoundingMode};
 
@@ -6,11 +6,11 @@ use super::{Asked, Kernels};
 use crate::grid::Grid;
 use crate::stress::Body;
 
-/// Corner differences at offset 16384, depth 1e6 and third derivatives cancel: 200 of them would do.
+/// Corner differences of third derivatives at offset 16384 and depth 1e6 cancel: 200 bits would suffice.
 const BITS: usize = 256;
 const RM: RoundingMode = RoundingMode::ToEven;
 
-/// Arithmetic of many digits.
+/// Arithmetic with many digits.
 #[derive(Clone)]
 struct Big(BigFloat);
 
@@ -90,7 +90,7 @@ fn reference([x, y, z]: [f64; 3], (dx, dy): (f64, f64), nu: f64, consts: &mut Co
     let (wxxx, wyyy) = (minus(&(wxyy + vx)), minus(&(wxxy + vy)));
     let nu2 = Big::of(2.0 * nu);
     let (h, n2) = (&Big::of(1.0) - &nu2, &Big::of(2.0) + &nu2);
-    // a of three terms: a - b - z c
+    // The difference of three terms: a - b - z c.
     let less = |a: &Big, b: &Big, c: &Big| (&(a - b) - &(&z * c)).to_f64() / (2.0 * std::f64::consts::PI);
     let normal = &nu2 * &vz;
     let pressure = [

@@ -1,4 +1,4 @@
-//! Grids as they come from instruments: squares of any count, strips, line scans, transposed and with slender elements.
+//! Grids of instruments: squares of any size, strips, line scans, transposed ones and ones with slender elements.
 
 use crate::grid::Grid;
 use crate::random::Random;
@@ -13,7 +13,7 @@ fn count(random: &mut Random, a: usize, b: usize) -> usize {
     }
 }
 
-/// Large ones are a small share, so that a case costs some tenths of a second in the mean.
+/// Large grids are a small share, so that the mean time of a case is some tenths of a second.
 pub fn any(random: &mut Random) -> Grid {
     let (mx, my) = match random.uniform() {
         u if u < 0.12 => (count(random, 32, 9600), 1),
@@ -36,7 +36,7 @@ pub fn any(random: &mut Random) -> Grid {
     Grid { mx, my, dx, dy }
 }
 
-/// As many elements in both directions, or nearly.
+/// Equal or nearly equal numbers of elements in both directions.
 fn square(random: &mut Random, a: usize, b: usize) -> (usize, usize) {
     let m = count(random, a, b);
     let other = if random.chance(0.5) { m } else { (m as f64 * random.between(0.7, 1.3)) as usize };

@@ -1,4 +1,4 @@
-//! Loads from one element in contact to all of them.
+//! Loads from one element in contact to full contact.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use super::faults::sorted;
 use crate::grid::{Grid, Load};
 use crate::random::Random;
 
-/// By approach or by force; `c` is the compliance over pi.
+/// A load by approach or by force; `c` is the compliance over pi.
 pub fn any(random: &mut Random, grid: &Grid, h: &[f64], c: f64, period: Option<(bool, bool)>) -> Load {
     let heights = sorted(h);
     if random.chance(0.5) {
@@ -16,7 +16,7 @@ pub fn any(random: &mut Random, grid: &Grid, h: &[f64], c: f64, period: Option<(
     }
 }
 
-/// The heights from the first to the last, or what a flat surface has instead.
+/// The difference of the highest and the lowest point, or a length for a flat surface.
 fn depth(grid: &Grid, heights: &[f64]) -> f64 {
     let depth = heights[heights.len() - 1] - heights[0];
     if depth > 0.0 {
@@ -32,10 +32,10 @@ fn approach(random: &mut Random, grid: &Grid, heights: &[f64], period: Option<(b
     let second = heights.iter().copied().find(|h| *h > lowest).unwrap_or(lowest + depth);
     let mean = heights.iter().sum::<f64>() / n as f64;
     Load::Approach(match random.uniform() {
-        // At first no contact, and one element of it.
+        // No contact, or one element in contact.
         u if u < 0.03 => lowest - random.pick(&[0.0, 0.1]) * depth,
         u if u < 0.13 => lowest + random.uniform() * (second - lowest),
-        // Bodies that would overlap in a part of all elements.
+        // Bodies that would overlap in a part of the elements.
         u if u < 0.55 => heights[(random.decades(1.0 / n as f64, 1.0) * (n - 1) as f64) as usize] + 1e-3 * depth,
         u if u < 0.65 => lowest + random.decades(1e-3, 1.0) * depth,
         // Full contact, or near it.
@@ -44,7 +44,7 @@ fn approach(random: &mut Random, grid: &Grid, heights: &[f64], period: Option<(b
     })
 }
 
-/// Parts of what flattens the surface: `E*` times its slope and area, and what presses spikes down.
+/// Parts of the force that flattens the surface: `E*` times its slope and area, and the force that presses spikes down.
 fn force(random: &mut Random, grid: &Grid, h: &[f64], heights: &[f64], e_star: f64) -> Load {
     let Grid { mx, dx, dy, .. } = *grid;
     let (n, depth) = (heights.len(), depth(grid, heights));
@@ -63,10 +63,10 @@ fn force(random: &mut Random, grid: &Grid, h: &[f64], heights: &[f64], e_star: f
     let second = heights.iter().copied().find(|h| *h > heights[0]).unwrap_or(heights[0] + depth);
     Load::Force(match random.uniform() {
         u if u < 0.01 => 0.0,
-        // What a single element carries before the next one touches.
+        // The force of a single element before the next one touches.
         u if u < 0.10 => e_star * (second - heights[0]) * dx.max(dy) * random.decades(1e-3, 1.0),
         u if u < 0.5 => all * random.decades(1e-3, 3.0),
-        // Spikes down to the plane of the others, and a part of what that carries.
+        // Spikes pressed down to the plane of the others, and a part of the force of that plane.
         u if u < 0.8 => {
             let (level, spread) = (heights[n / 4], heights[3 * n / 4] - heights[n / 4]);
             let spikes = heights.iter().take_while(|h| **h < level - spread).count() as f64;

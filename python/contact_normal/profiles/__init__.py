@@ -1,4 +1,4 @@
-"""From two profiles to a gap: a wheel on a rail.
+"""Makes a gap from two profiles: a wheel on a rail.
 
 Lengths are in mm, angles in rad, forces in N::
 

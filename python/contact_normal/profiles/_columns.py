@@ -1,4 +1,4 @@
-"""Columns of numbers in a text: which of its lines are points of a profile."""
+"""Columns of numbers in a text: finds the lines that are points of a profile."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from .._decimal_commas import cut_decimals, has_decimal_commas
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
 
-# Lines that may be points: they begin with a number, or with what stands for one that does not fit or is not known.
+# Lines that may be points: they begin with a number, or with a mark for a number that does not fit or is unknown.
 _BEGINS = re.compile(r"\s*(?:[-+]?[.,]?\d|\*|[-+]?(?:nan|inf)\b)", re.IGNORECASE)
-# These have letters that no number has: titles.
+# Letters that no number has mark a title.
 _LETTERS = re.compile(r"[^\W\d_]")
 _NO_TITLE = re.compile(r"nan|inf|(?<=[\d.])[eEdD](?=[-+\d])", re.IGNORECASE)
 # Marks around numbers.
 _BRACKETS = str.maketrans("\"()[]", "     ")
-# So many lines of numbers, counts and dates, may stand before and behind the points.
+# At most this many lines of numbers, as counts and dates, may stand before and behind the points.
 _OTHERS = 2
 
 
 def to_number(word: str) -> float:
-    """The number of a word that `NUMBER` matches; Fortran's D is an exponent."""
+    """The number of a word that matches `NUMBER`; Fortran's D is an exponent."""
     return float(re.sub("[dD]", "e", word))
 
 
 def columns_of(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, int]:
-    """Two columns of the lines that are points, and how many columns all of these have.
+    """Two columns of the lines that are points, and the least number of columns in these lines.
 
-    Titles, counts and dates stand before all points, or behind them. Lines of numbers that lack one of the columns are refused among the points, and,
-    where there are several, everywhere: they are points that cannot be read.
+    Titles, counts and dates stand before or behind all points. A line of numbers that lacks one of the columns is refused among the points, and several such
+    lines are refused anywhere, because they are points that cannot be read.
     """
     lines = [line for line in text.translate(_BRACKETS).splitlines() if _BEGINS.match(line)]
     rows: list[list[float]] = []
@@ -63,5 +63,5 @@ def columns_of(text: str, columns: tuple[int, int], path: str | os.PathLike[str]
 
 
 def _words(line: str, commas: bool) -> list[str]:
-    """The columns of a line, parted by blanks, semicolons and, where they are no decimal points, commas."""
+    """The columns of a line, separated by blanks, by semicolons and, unless they are decimal points, by commas."""
     return (line.replace(",", ".") if commas else line.replace(",", " ")).replace(";", " ").split()

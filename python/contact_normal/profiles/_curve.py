@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Newton's steps of an inversion. Each doubles the digits; the start, on the polygon, has three.
+# Steps of Newton's method for an inversion. Each doubles the digits; the start, on the polygon, has three.
 _STEPS = 4
 
 
@@ -39,7 +39,7 @@ class Curve:
     t, y, z : ndarray, (n,)
         The points.
     open : ndarray, (m, n), or None
-        How far off the points may lie along the normal, where they were smoothed: what smoothing has removed, and samples of what errors leave.
+        Possible errors of the points along the normal, if they were smoothed: the form that smoothing removed, and samples of the remaining errors.
     """
 
     def __init__(self, y: Doubles, z: Doubles, is_open: Doubles | None = None) -> None:
@@ -48,7 +48,7 @@ class Curve:
         self._bends = second_derivatives(self.t, y), second_derivatives(self.t, z)
 
     def between(self, count: int) -> Doubles:
-        """Places t, `count` from each point to the next."""
+        """Values of t, `count` from each point to the next."""
         n = len(self.t)
         return np.asarray(np.interp(np.arange((n - 1) * count + 1) / count, np.arange(n), self.t))
 
@@ -65,7 +65,7 @@ class Curve:
         return out[0], out[1], out[2], out[3]
 
     def where(self, along: Any, direction: tuple[float, float] = (1.0, 0.0), near: float = 0.0) -> Doubles:
-        """The t at which `direction` . (y, z) is `along`, by Newton's method from the polygon; NaN where there is none.
+        """The t at which `direction` . (y, z) is `along`, by Newton's method from the polygon; NaN if there is none.
 
         Only the part of the curve around the point at t = `near` is searched on which this product grows from point to point.
         """

@@ -1,4 +1,4 @@
-"""Symmetric systems with five diagonals, in a time in proportion to their size."""
+"""Symmetric systems with five diagonals, in a time proportional to their size."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ if TYPE_CHECKING:
 
 
 def solve(diagonal: Doubles, first: Doubles, second: Doubles, right: Doubles) -> Doubles:
-    """x of M x = right, where M is positive definite and has `diagonal`, and beside it, on both sides, `first` and `second`.
+    """x of M x = right, for a positive definite M with `diagonal`, and with `first` and `second` beside it on both sides.
 
-    M = L D L' (Golub and Van Loan, section 4.3), L with ones on its diagonal and two diagonals below. Numbers of Python: in a loop they are faster than
-    numpy's.
+    M = L D L' (Golub and Van Loan, section 4.3), where L has ones on its diagonal, and two diagonals below. Python's numbers are faster in a loop than numpy's.
     """
     n = len(diagonal)
     m0, m1, m2 = diagonal.tolist(), [*first.tolist(), 0.0], [*second.tolist(), 0.0, 0.0]

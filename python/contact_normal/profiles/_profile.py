@@ -56,19 +56,19 @@ _SPIKE, _TIMES, _AROUND = 0.03, 10.0, 12
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Profile(Short):
-    """Points of the cross-section of a wheel or a rail, those of the right-hand side of a track.
+    """Points of the cross-section of a wheel or a rail, on the right-hand side of a track.
 
-    y grows outwards, from the middle of the track to the field side, z grows downwards, and the points are in the order of growing y, as one
-    walks along the tread or the head. So the flange of a wheel is at the smallest y and points to large z; the top of a rail has the smallest z.
+    y grows outwards, from the middle of the track to the field side, z grows downwards, and the points are in the order of growing y along the tread or the
+    head. So the flange of a wheel is at the smallest y and points to large z; the top of a rail has the smallest z.
 
     Attributes
     ----------
     y, z : ndarray, (n,)
         The points, in mm.
     kind : {"wheel", "rail"}
-        What it is.
+        Wheel or rail.
     name : str
-        For messages and pictures.
+        The name in messages and pictures.
     """
 
     y: Doubles
@@ -98,11 +98,11 @@ class Profile(Short):
         return self.name or f"the {self.kind}"
 
     def has_flange(self) -> bool:
-        """Whether these are points of a wheel with its flange, not of the tread alone."""
+        """Whether the points are those of a wheel with its flange, not of a tread only."""
         return self.kind == "wheel" and bool(max(np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)) >= _FLANGE)
 
     def _check_orientation(self) -> None:
-        """Refuses a profile that is upside down, reversed or mirrored: contact would be somewhere, and wrong."""
+        """Refuses a profile that is upside down, reversed or mirrored, because its contact would be wrong."""
         if self.y[0] > self.y[-1]:
             raise ValueError(f"{self._title()} begins at the larger y; its points must be in the order of growing y: y[::-1] and z[::-1]")
         k = int(np.argmin(np.diff(self.y)))
@@ -111,7 +111,7 @@ class Profile(Short):
                              "them; or sort the points")
         above, below = np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)
         if self.kind == "wheel":
-            # A tread alone, without a flange, may have a chamfer as its lowest place or its highest one; its radius grows to the flange.
+            # The lowest or highest place of a tread without a flange may be a chamfer; the radius of the tread grows towards the flange.
             if not self.has_flange():
                 inner = self.y < 0.5 * (self.y[0] + self.y[-1])
                 if inner.any() and not inner.all() and self.z[~inner].mean() > self.z[inner].mean() + _LEVEL:
@@ -128,11 +128,11 @@ class Profile(Short):
             raise ValueError(f"{self._title()} has its top at the largest z; z must grow downwards: upside_down=True")
 
     def moved(self, y: float = 0.0, z: float = 0.0) -> Profile:
-        """Moved by y and z, in mm."""
+        """The profile moved by y and z, in mm."""
         return self._with(self.y + number("y", y), self.z + number("z", z), self._open)
 
     def rotated(self, angle: float) -> Profile:
-        """Rotated about the origin by an angle in rad. A rail of an inclination of 1:40 is rotated by 1/40: its top moves to the track."""
+        """The profile rotated about the origin by an angle in rad. A rail with an inclination of 1:40 is rotated by 1/40: its top moves towards the track."""
         c, s = np.cos(number("angle", angle)), np.sin(angle)
         return self._with(c * self.y + s * self.z, c * self.z - s * self.y, self._open)
 
@@ -187,7 +187,7 @@ class Profile(Short):
         return self._with(y, z, is_open)
 
     def _usable(self) -> Any:
-        """Indices of the points that a curve goes through: from the tread or the top to the first steep face on either side."""
+        """Indices of the points of the curve: from the tread or the top to the first steep face on either side."""
         points, apart = list(zip(self.y.tolist(), self.z.tolist())), [0]
         for k, point in enumerate(points):
             if math.dist(point, points[apart[-1]]) >= CLOSEST:
@@ -243,7 +243,7 @@ class Profile(Short):
         return self._spikes(self._usable())
 
     def _spikes(self, chosen: Any) -> Any:
-        """Those among the points that are chosen."""
+        """The spikes among the chosen points."""
         y, z = self.y[chosen], self.z[chosen]
         if len(y) < _AROUND:
             return chosen[:0]
@@ -285,7 +285,7 @@ class Profile(Short):
         return float(np.median(np.abs(np.diff(curvature))))
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws the points, as one sees them: z downwards."""
+        """Draws the points with z downwards."""
         from .._plot_surfaces import plot_profile
 
         return plot_profile(self, axes)

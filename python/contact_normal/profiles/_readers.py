@@ -1,6 +1,6 @@
 """Profiles from files: SIMPACK's .prr and .prw, MiniProf's .ban and .whl, plain columns.
 
-Each reader was written from the public description of its format, and from the comments that such files carry.
+Each reader was written from the public description of its format, and from comments in such files.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ._columns import columns_of
 from ._profile import Profile
 from ._simpack import points_of
 
-# Kinds by the ends of file names; .ban is Danish for a track.
+# Kinds by the endings of file names; .ban is Danish for a track.
 _KINDS = {".prr": "rail", ".prw": "wheel", ".ban": "rail", ".whl": "wheel"}
 _UPSIDE_DOWN = ".ban", ".whl"
 
@@ -37,24 +37,24 @@ def read(
     Parameters
     ----------
     path : str or path
-        `.prr` and `.prw` are read as SIMPACK's rails and wheels; `.ban` and `.whl` as MiniProf's, which are columns of numbers below lines `NAME=value`, of
-        which `ColumnDef=` names X and Y; all other files as columns of numbers. Lines that do not begin with a number are skipped; others among the
-        points must be points.
+        `.prr` and `.prw` are read as rails and wheels of SIMPACK. `.ban` and `.whl` are read as files of MiniProf: columns of numbers below lines `NAME=value`,
+        with `ColumnDef=` naming X and Y. All other files are read as columns of numbers. Lines that do not begin with a number are skipped; other lines among
+        the points must be points.
     kind : {"wheel", "rail"}, optional
-        What it is; by default what the end of the file's name says.
+        Wheel or rail; by default by the ending of the file name.
     columns : (int, int)
         The columns of y and z.
     mirror : bool
         Whether y grows towards the middle of the track in the file.
     upside_down : bool, optional
-        Whether z grows upwards in the file; by default of `.ban` and `.whl` only.
+        Whether z grows upwards in the file; by default for `.ban` and `.whl` only.
     scale : float
-        Millimetres in the unit of the file. The header of `.prr` and `.prw` has its own unit, which is obeyed.
+        Millimetres per unit of the file. The header of `.prr` and `.prw` has its own unit, which is used as well.
 
     Returns
     -------
     Profile
-        In mm, in its own coordinates: `Track` and `Wheelset` put it in its place.
+        In mm, in its own coordinates: `Track` and `Wheelset` place it.
 
     Raises
     ------
@@ -100,14 +100,14 @@ def _checked(columns: Any) -> tuple[int, int]:
 
 
 def _defined(text: str, else_: tuple[int, int]) -> tuple[int, int]:
-    """The columns X and Y that MiniProf's header names: `ColumnDef=X,Y,...`."""
+    """The columns X and Y in MiniProf's header: `ColumnDef=X,Y,...`."""
     said = re.search(r"^\s*ColumnDef\s*=\s*(.*?)\s*$", text, re.MULTILINE | re.IGNORECASE)
     names = [name.strip(' "*').upper() for name in said[1].split(",")] if said else []
     return (names.index("X"), names.index("Y")) if {"X", "Y"} <= set(names) else else_
 
 
 def _table(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, str]:
-    """The points of a file of columns, and a hint for a profile that is refused. A column without coordinates is refused as y: it might pass as one."""
+    """The points of a file of columns, and a hint for a refused profile. A column without coordinates is refused as y, because it might pass as one."""
     points, width = columns_of(text, columns, path)
     y, first, name = points[:, 0], columns[0], Path(path).name
     others = f"; y and z are other columns: columns=({first + 1}, {first + 2})?" if width > first + 2 else ""

@@ -1,4 +1,4 @@
-"""How far the points of a profile determine the pressures: their noise, the digits of the file, and how many there are."""
+"""The uncertainty of pressures by the points of a profile: by their noise, by the decimals of the file, and by their number."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ if TYPE_CHECKING:
     from .._arguments import Doubles
     from .._result import Result
 
-# Places across the contact at which curves are compared.
+# The number of places across the contact at which curves are compared.
 _PLACES = 256
 
-# A warning tells of more than this part of the largest pressure.
+# A warning needs an uncertainty of more than this part of the largest pressure.
 _TOLD = 0.05
 
-# Fewer points than this within the contact are few; more are noisy where they leave pressures open.
+# Fewer points than this within the contact are few. More points with uncertain pressures are noisy.
 _FEW = 8
 
-# A warning tells of a contact point that is uncertain by more than the first, in mm, without a number by more than the second; slopes beside it are looked
-# at so far away.
+# A warning needs a contact point that is uncertain by more than the first length, in mm; above the second one it has no value. Slopes are compared up to the
+# third length beside it.
 _MOVED, _MANY, _BESIDE = 1.0, 10.0, 1.0
 
-# So many points on each side of it.
+# The number of points on each side of the contact point.
 _AROUND = 24
 
 
@@ -43,17 +43,17 @@ class Body:
 
 
 def warn(bodies: tuple[Body, ...], y: Doubles, result: Result, stacklevel: int) -> None:
-    """Warns if pressures depend on which points of the profiles are taken, or on what smoothing has done.
+    """Warns if pressures depend on the choice of points of the profiles, or on smoothing.
 
-    Without every other point a curve differs by some e2, and with each fourth one by e4. Between points that are dense enough e4 is several times e2, and
-    the error of all points is some e2^2/e4; errors that are noise stay as they are. They are looked at as pressures: a wave cos(k y) of the
-    undeformed distance needs E* k/2 of its height. E* is that of F = 4/3 E* a d, Hertz's force of an approach d and a contact of the area pi a^2.
-    Points that were smoothed tell no noise: their curve says what is left of it, and what of the form was removed.
+    Let e2 be the change of a curve without every other point, and e4 that with every fourth point. If points are dense enough, e4 is several times e2, and the
+    error with all points is some e2^2/e4; errors by noise do not fall like this. The changes are converted to pressures: a wave cos(k y) of the undeformed
+    distance needs E* k/2 of its height. E* follows from F = 4/3 E* a d, Hertz's force for an approach d and a contact area of pi a^2. Smoothed points show no
+    noise: their curve has samples of the remaining errors, and the removed form.
 
     Parameters
     ----------
     y : ndarray, (my,)
-        Places of the rows of elements, from the contact point.
+        Places of the rows of elements, relative to the contact point.
     """
     rows = y[result.contact.any(axis=1)]
     if not (len(rows) and result.approach > 0.0 and result.max_pressure > 0.0):
@@ -77,7 +77,7 @@ _CAUSES = ("so much they depend on which points of the profiles are taken", "so 
 
 
 def _cure(body: Body, inside: int, cause: int) -> str:
-    """What to do."""
+    """The advice in a warning."""
     if cause == 2:
         return "use a shorter wave_length"
     if inside < _FEW:
@@ -88,7 +88,7 @@ def _cure(body: Body, inside: int, cause: int) -> str:
 
 
 def _open_pressures(body: Body, along: Doubles, e_star: float) -> tuple[float, float, float]:
-    """The root mean squares of the pressures that are open by the choice of points, by errors of points that were smoothed, and by lost form."""
+    """The root mean squares of uncertain pressures: by the choice of points, by errors of smoothed points, and by lost form."""
 
     def of_every(every: int) -> float:
         return sum(_pressure(_difference(body, along, start, every), along, e_star) for start in range(every)) / every
@@ -101,7 +101,7 @@ def _open_pressures(body: Body, along: Doubles, e_star: float) -> tuple[float, f
 
 
 def _by_choice(of_every: Callable[[int], float]) -> float:
-    """The part that the choice of points leaves open, from the change if every second and every fourth point is taken."""
+    """The part that depends on the choice of points, from the changes with every second and every fourth point."""
     second = of_every(2)
     return second * min(1.0, second / of_every(4)) if second > 0.0 else 0.0
 
@@ -111,9 +111,9 @@ def _rms(values: list[float]) -> float:
 
 
 def warn_of_place(bodies: tuple[Body, Body], stacklevel: int) -> None:
-    """Warns if the place where a rail and a wheel touch depends on which points of their profiles are taken, or on what smoothing has left of noise.
+    """Warns if the contact point of a rail and a wheel depends on the choice of points of their profiles, or on noise after smoothing.
 
-    There both have one slope, so slopes that are open by s move it by s over the difference of the curvatures.
+    There both have equal slopes, so that slopes with an uncertainty s move it by s over the difference of the curvatures.
     """
     of_rail, of_wheel = ((_slope(body.curve, body.t + _BESIDE) - _slope(body.curve, body.t - _BESIDE)) / (2.0 * _BESIDE) for body in bodies)
     parts = [_open_slope(body) for body in bodies]
@@ -134,9 +134,9 @@ def _slope(curve: Curve, t: float) -> float:
 
 
 def _open_slope(body: Body) -> float:
-    """The angle at the contact point that the choice of points leaves open, or what is left of noise."""
+    """The uncertainty of the angle at the contact point, by the choice of points or by remaining noise."""
     curve, at_point = body.curve, int(np.searchsorted(body.curve.t, body.t))
-    # Far points do not bend a spline.
+    # Far points have no effect on a spline.
     first, last = max(0, at_point - _AROUND), min(at_point + _AROUND, len(curve.y) - 1)
 
     def of_every(every: int) -> float:
@@ -157,7 +157,7 @@ def _open_slope(body: Body) -> float:
 
 
 def _difference(body: Body, along: Doubles, start: int, every: int) -> Doubles:
-    """How far the curve of the points `start`, `start + every`, ... and both ends lies off that of all, along the normal."""
+    """The distance along the normal of the curve through the points `start`, `start + every`, ... and both ends from that through all points."""
     curve, last = body.curve, len(body.curve.y) - 1
     chosen = np.unique(np.concatenate([[0], np.arange(start, last, every), [last]]))
     coarse = Curve(curve.y[chosen], curve.z[chosen])
@@ -168,7 +168,7 @@ def _difference(body: Body, along: Doubles, start: int, every: int) -> Doubles:
 
 
 def _pressure(off: Doubles, along: Doubles, e_star: float) -> float:
-    """Root mean square of the pressures that flatten these heights, less their line: they are continued as a mirror shows them."""
+    """The root mean square of the pressures that flatten these heights, less their line, with a mirror-symmetric continuation."""
     level = off - np.polyval(np.polyfit(along, off, 1), along)
     both = np.concatenate([level, level[::-1]])
     k = 2.0 * np.pi * np.fft.rfftfreq(len(both), along[1] - along[0])

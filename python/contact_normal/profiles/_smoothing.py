@@ -1,4 +1,4 @@
-"""The smoothing splines of Reinsch (1967) through the points of a curve, in a time in proportion to their number."""
+"""The smoothing splines of Reinsch (1967) through the points of a curve, in a time proportional to their number."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
 
 
 def smoothing_splines(rows: Doubles, places: Doubles, wave_length: float) -> Doubles:
-    """Rows of values at the points of a curve without waves that are shorter than a length. For points themselves each coordinate is a row: coordinates
-    alone, z over y, would bend a steep face, whose slope changes fast.
+    """Rows of values at the points of a curve, without waves that are shorter than a length. For the points themselves each coordinate is a row, because
+    smoothing of z over y alone would bend a steep face, whose slope changes fast.
 
     Parameters
     ----------
     rows : ndarray, (m, n)
-        Values at the points, in their order.
+        Values at the points, in order.
     places : ndarray, (2, n)
-        The points; none of them twice.
+        The points, without equal neighbours.
     """
     d = np.hypot(*np.diff(places))
-    # f = z - c W^-1 Q g with (R + c Q' W^-1 Q) g = Q' z, where g = f'' = R^-1 Q' f at the inner points, and W holds the length of each.
+    # f = z - c W^-1 Q g with (R + c Q' W^-1 Q) g = Q' z, where g = f'' = R^-1 Q' f at the inner points, and the diagonal of W has the length of each point.
     before, after = 1.0 / d[:-1], 1.0 / d[1:]
     at = -before - after
     w = 1.0 / np.convolve(np.concatenate([d[:1], d, d[-1:]]), [0.5, 0.5], "valid")

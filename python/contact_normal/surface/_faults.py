@@ -1,4 +1,4 @@
-"""Faults of a measurement: holes, values that stand for "not measured", spikes."""
+"""Faults of a measurement: holes, fill values that mean "not measured", spikes."""
 
 from __future__ import annotations
 
@@ -19,30 +19,30 @@ if TYPE_CHECKING:
 
     from .._arguments import Doubles
 
-# A value that stands for "not measured" occurs at least so often; one alone is a spike.
+# A fill value occurs at least this often; a single one is a spike.
 _OFTEN = 2
-# Of fewer distinct values none can be told from a step of the surface.
+# With fewer distinct values fill values cannot be distinguished from steps of the surface.
 _DISTINCT = 8
-# Curvatures between elements twice as far apart are so many times as large.
+# Curvatures between elements at twice the distance are larger by this factor.
 _FAR = 4.0
-# Standard deviations of a normal distribution in a median of absolute values.
+# Standard deviations of a normal distribution per median of absolute values.
 _DEVIATIONS = 1.0 / 0.6744897501960817
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Faults(Short):
-    """What is wrong with measured heights.
+    """The faults of measured heights.
 
     Attributes
     ----------
     heights : Heights
-        As they were measured.
+        The heights as measured.
     holes : ndarray of bool, (my, mx)
-        Not measured.
+        Elements that were not measured.
     fills : ndarray of bool, (my, mx)
-        A value that stands for "not measured".
+        Elements with a fill value, which means "not measured".
     fill_values : tuple of float
-        These values.
+        The fill values.
     spikes : ndarray of bool, (my, mx)
         Single elements far from their neighbours.
     """
@@ -55,7 +55,7 @@ class Faults(Short):
 
     @property
     def removed(self) -> Heights:
-        """The heights with holes in the place of fill values and spikes."""
+        """The heights with holes in place of fill values and spikes."""
         return self.heights.without(self.fills | self.spikes)
 
     def __str__(self) -> str:
@@ -77,7 +77,7 @@ class Faults(Short):
 
 
 def _fill_values(z: Doubles) -> list[float]:
-    """Extreme values that occur more than once and are further from the next value than all values between the extremes are from each other."""
+    """Extreme values that occur more than once, and whose distance from the next value exceeds all distances of values between the extremes."""
     found: list[float] = []
     while True:
         values, counts = np.unique(z[np.isfinite(z) & ~np.isin(z, found)], return_counts=True)
@@ -93,7 +93,7 @@ def _fill_values(z: Doubles) -> list[float]:
 
 
 def warn_of_fill_values(heights: Heights, stacklevel: int) -> None:
-    """Warns of values that seem to stand for "not measured": they move a plane of least squares, or carry the load."""
+    """Warns of probable fill values, because they move a least-squares plane, or carry the load."""
     told = [f"{np.count_nonzero(heights.z == value)} elements have the value {value:g}" for value in _fill_values(heights.z)]
     if told:
         warnings.warn(f"{' and '.join(told)}, which seems to stand for 'not measured': heights(..., fill=) or faults(...).removed makes them holes",
@@ -106,27 +106,27 @@ def _noise(z: Doubles, period: str | None, away: Doubles) -> float:
     others = away[away > 0.0]
     if deviation > 0.0 or not len(others) or all_but_single(z, period):
         return deviation
-    # More than half of them are 0, on quantised heights or a plateau: the steps of the heights or the other differences are the noise.
+    # More than half of the differences are 0, as on quantised heights or a plateau: the steps of the heights or the other differences are the noise.
     step, other = float(np.median(np.diff(np.unique(z[np.isfinite(z)])))), float(np.median(others))
-    # Few steps of a flat are those of its spikes.
+    # The few steps of a plane are those of its spikes.
     return min(step, _DEVIATIONS * other) if other <= step else _DEVIATIONS * other
 
 
 def faults(heights: Heights, spike: float = 10.0) -> Faults:
-    """Finds values that stand for "not measured", and spikes.
+    """Finds fill values and spikes.
 
-    A fill value is the smallest or the largest value, occurs at least twice, and is further from the next one than all between the extremes are
-    from each other. A spike differs from the median of its neighbours by more than `spike` standard deviations of these differences, and as
-    much from the mean of each pair of opposite neighbours: crests along a lay are none. Where more than half of the heights equal their neighbours, as of
-    quantised or clipped heights, the steps of the heights or the other differences stand for the deviation. The corners of a surface with steps,
-    and crests and edges of grooves askew to the grid, may count as spikes: look at them (`Faults.plot`).
+    A fill value is the smallest or the largest value, occurs at least twice, and its distance from the next value exceeds all distances of values between the
+    extremes. A spike differs from the median of its neighbours by more than `spike` standard deviations of these differences, and as much from the mean of each
+    pair of opposite neighbours, so that crests along a lay are no spikes. If more than half of the heights equal their neighbours, as with quantised or clipped
+    heights, the deviation is that of the steps of the heights, or of the other differences. The corners of a surface with steps, and crests and edges of
+    grooves that are oblique to the grid, may count as spikes: check them (`Faults.plot`).
 
     Parameters
     ----------
     heights : Heights
-        What was measured.
+        The measured heights.
     spike : float
-        How many standard deviations, by their median: 10 is far beyond what smooth or self-affine surfaces have.
+        Limit in standard deviations, by their median: 10 is far beyond smooth or self-affine surfaces.
     """
     refuse_others(heights=heights)
     if not number("spike", spike) > 0.0:
@@ -140,12 +140,12 @@ def faults(heights: Heights, spike: float = 10.0) -> Faults:
     if known.any():
         limit = spike * _noise(z, heights.period, away[known])
         spikes[known] = away[known] > limit
-        # At a border, beside a hole or another spike, on a crest a slope moves the median: it is no spike. Nor are neighbours of one, which it misleads.
+        # At a border, or beside a hole, another spike or a crest, a slope moves the median: such an element is no spike. Nor are neighbours of a spike.
         for is_again in (False, True):
             at = np.nonzero(spikes)
             said = said_by_neighbours(np.where(spikes & is_again, np.nan, z), heights.period, at, z[at], only_between=not is_again)
             spikes[at] = ~(np.abs(z[at] - said) <= limit)
-        # Alone among holes, as the middle of dust whose rim was removed: those two elements away say the height, less closely.
+        # For an element among holes, as the middle of dust whose rim was removed, the elements at a distance of two give the height, less exactly.
         at = np.nonzero(np.isfinite(z) & ~known)
         spikes[at] = np.abs(z[at] - said_by_neighbours(z, heights.period, at, z[at], reach=2)) > _FAR * limit
     return Faults(heights, heights.holes, fills, tuple(values), spikes)

@@ -10,7 +10,7 @@ from typing import Any
 from .._texts import decoded
 from .._units import in_metres
 
-# A header is within so many bytes.
+# A header is within this number of bytes.
 _WITHIN = 4096
 
 _LENGTH = re.compile(r"^#\s*(Width|Height)\s*:[ \t]*([-+.,\deE]+)(?![-+.,\d])[ \t]*(\S*)[ \t]*$", re.MULTILINE)

@@ -1,4 +1,4 @@
-"""Heights of a surface on a grid, the way the library lays out its arrays."""
+"""Heights of a surface on a grid, in the layout of the library's arrays."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 
     from .._arguments import Doubles
 
-# Spacings of coordinates that differ by more than this part are not those of one grid: files have five digits or more.
+# Coordinates whose spacings differ by more than this part are not those of one grid: files have at least five digits.
 _EQUAL = 1e-3
 
-# The median slope of a surface is less, that of a root mean square of 1, if there are so many slopes; and nine of ten slopes are not all below the last one:
-# those of heights in m beside um are.
+# With at least _STEPS slopes the median slope of a surface is below _STEEP, that of an rms slope of 1, and one of ten slopes is above _LEVEL. Smaller slopes
+# are those of heights in m with sizes in um.
 _STEEP, _STEPS, _LEVEL = 0.67, 64, 2e-7
 
-# Elements that are worked on at a time: some megabytes.
+# The number of elements that are processed at a time: some megabytes.
 _BLOCK = 1 << 18
 
 
 def blocks(shape: tuple[int, ...]) -> Iterator[slice]:
-    """Rows of an array, some at a time, so that large maps need no memory of many times their own."""
+    """Blocks of rows of an array, so that temporary arrays of large maps stay small."""
     rows = max(1, _BLOCK // max(shape[1], 1))
     for first in range(0, shape[0], rows):
         yield slice(first, min(first + rows, shape[0]))
@@ -75,12 +75,12 @@ class Heights(Short):
 
     @property
     def holes(self) -> npt.NDArray[np.bool_]:
-        """Where nothing was measured."""
+        """The elements that were not measured."""
         return np.isnan(self.z)
 
     @property
     def area(self) -> float:
-        """Area of the grid, which is the number of elements times the size of one."""
+        """Area of the grid: the number of elements times the area of one."""
         return float(self.z.size * self.dx * self.dy)
 
     def force(self, mean_pressure: float) -> float:
@@ -88,15 +88,15 @@ class Heights(Short):
         return number("mean_pressure", mean_pressure) * self.area
 
     def without(self, where: npt.ArrayLike) -> Heights:
-        """Without the heights at some elements, a mask of booleans: they become holes."""
+        """The heights without those of a mask of booleans, whose elements become holes."""
         mask = np.asarray(where)
         if mask.dtype != bool or mask.shape != self.z.shape:
             raise ValueError(f"where has shape {mask.shape} and dtype {mask.dtype}; it must be a mask of booleans, {self.z.shape}")
         return dataclasses.replace(self, z=np.where(mask, np.nan, self.z))
 
     def turned_over(self, about: str = "y") -> Heights:
-        """The same surface after its body was turned over, about an axis along x or y, to lie on another one: the heights keep their sign,
-        and x, or y, runs the other way."""
+        """The surface after its body is turned over about an axis along x or y, to lie on another one: the heights keep their sign, and x, or y, is
+        reversed."""
         if about not in ("x", "y"):
             raise ValueError(f'about is {about!r}; it must be "x" or "y"')
         return dataclasses.replace(self, z=np.ascontiguousarray(self.z[:, ::-1] if about == "y" else self.z[::-1]))
@@ -109,14 +109,14 @@ class Heights(Short):
 
 
 def refuse_others(**given: Any) -> None:
-    """Refuses what is not Heights: an array has no sizes of elements."""
+    """Refuses other objects than Heights, because an array has no element sizes."""
     for name, one in given.items():
         if not isinstance(one, Heights):
             raise TypeError(f"{name} is a {type(one).__name__}; it must be Heights: surface.heights(values, dx, dy)")
 
 
 def _spacing(name: str, places: Any, count: int) -> tuple[float, bool]:
-    """The spacing of coordinates, and whether they fall."""
+    """The spacing of coordinates, and whether they decrease."""
     values = real(name, places)
     if count < 2:
         raise ValueError(f"{name} has one place, which tells no spacing: give dx and dy in the place of x and y")
@@ -130,7 +130,7 @@ def _spacing(name: str, places: Any, count: int) -> tuple[float, bool]:
 
 
 def _plain(values: Any) -> Doubles:
-    """An array of two indices, NaN where nothing was measured."""
+    """A two-dimensional array with NaN in elements that were not measured."""
     z = real("values", without_mask("values", values))
     if z.ndim != 2 or not z.size:
         raise ValueError(f"values has shape {z.shape}; heights have two indices{'' if z.size else ', and one element at least'}")
@@ -140,7 +140,7 @@ def _plain(values: Any) -> Doubles:
 def _element_sizes(
     shape: tuple[int, ...], dx: Any, dy: Any, size: Any, span: Any, x: Any, y: Any
 ) -> tuple[tuple[float, float], tuple[bool, bool]]:
-    """The sizes of an element by the one way in which they are given, and whether coordinates fall."""
+    """The size of an element, from exactly one of the ways to give it, and whether coordinates decrease."""
     my, mx = shape
     ways = (dx is not None or dy is not None, size is not None, span is not None, x is not None or y is not None)
     if sum(ways) != 1:
@@ -181,28 +181,28 @@ def heights(
     period: str | None = None,
     units: tuple[str, str] | None = None,
 ) -> Heights:
-    """Heights from an array, turned so that x runs along a row, with the size of an element.
+    """Heights from an array, with x along a row, and with the size of an element.
 
     Parameters
     ----------
     values : array_like
         Heights. NaN, infinite and masked: not measured.
     dx, dy : float
-        Element sizes. In their place one of `size`, `span`, or `x` and `y`:
+        Element sizes. Instead of them one of `size`, `span`, or `x` and `y`:
     size : (float, float)
-        Lengths of the measured field in x and in y, that is of mx and of my elements.
+        Lengths of the measured field in x and in y: those of mx and of my elements.
     span : (float, float)
-        Lengths from the first to the last sample, that is of mx - 1 and of my - 1 elements.
+        Lengths from the first to the last sample: those of mx - 1 and of my - 1 elements.
     x, y : array_like, (mx,) and (my,)
-        Coordinates of the samples. Where they fall, the array is reversed.
+        Coordinates of the samples. If they decrease, the array is reversed.
     axes : {"yx", "xy"}
-        What the indices of `values` are: "yx": values[iy, ix]; "xy": values[ix, iy].
+        The meaning of the indices of `values`: "yx": values[iy, ix]; "xy": values[ix, iy].
     top_first : bool
-        Whether the first row is that of the largest y, as in an image. Coordinates y that fall say the same.
+        Whether the first row has the largest y, as in an image. Decreasing coordinates y have the same meaning.
     fill : float, optional
-        A value that stands for "not measured", in the unit of the array. `faults` finds it if you do not know it. A warning tells if no element has it.
+        A fill value, which means "not measured", in the unit of the array. `faults` finds unknown ones. If no element has the value, there is a warning.
     period : {"x", "y", "xy"}, optional
-        Directions in which the surface repeats itself.
+        Directions in which the surface is periodic.
     units : (str, str), optional
         Names of the units of lengths and forces, as ("mm", "N").
 
@@ -221,18 +221,18 @@ def heights(
     (one, other), (x_falls, y_falls) = _element_sizes(z.shape, dx, dy, size, span, x, y)
     z = z[:: -1 if flag("top_first", top_first) or y_falls else 1, :: -1 if x_falls else 1]
     if fill is not None:
-        # As the array holds it: in single precision -9999.9 is another number. Readers of files may have made doubles of such numbers.
+        # The value as the array holds it: in single precision -9999.9 is another number. Readers of files may have made doubles of such numbers.
         own = getattr(values, "dtype", np.dtype(float))
         as_held = number("fill", fill)
         if own.kind == "f":
             as_held = float(own.type(as_held))
         filled = z == as_held
         if not filled.any():
-            # The largest one is written as 3.4028235e38, which is above it.
+            # The largest single-precision number is written as 3.4028235e38, which is above it.
             with np.errstate(over="ignore"):
                 single = float(np.float32(as_held))
             filled = z == single if np.isfinite(single) else filled
-        # What is no number, or infinite, is a hole already.
+        # NaN and infinite values are holes anyway.
         if np.isfinite(as_held) and not filled.any():
             warnings.warn(f"no element has the value {fill!r} that stands for 'not measured': the heights are from {np.nanmin(z):g} to {np.nanmax(z):g}"
                           if np.isfinite(z).any() else f"no element has the value {fill!r}: none was measured", stacklevel=2)
@@ -242,7 +242,8 @@ def heights(
 
 
 def _warn_of_slopes(z: Doubles, dx: float, dy: float) -> None:
-    """Warns of slopes that no surface has: heights and elements are in two units then. Most neighbours count, not fill values and spikes."""
+    """Warns of slopes that no surface has: heights and element sizes are then in different units. Only the majority counts, so that fill values and spikes have
+    no effect."""
     for name, axis, d in (("x", 1, dx), ("y", 0, dy)):
         steps = np.abs(np.diff(z[:: max(1, len(z) // 64)] if axis == 1 else z[:, :: max(1, z.shape[1] // 64)], axis=axis))
         steps = steps[np.isfinite(steps)]

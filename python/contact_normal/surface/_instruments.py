@@ -1,4 +1,4 @@
-"""Files of instruments, by the package SurfaceTopography, and which of several arrays is meant."""
+"""Files of instruments, by the package SurfaceTopography, and the choice among several arrays."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def size_of(topography: Any) -> tuple[float, ...] | None:
 
 
 def of_instrument(path: str | os.PathLike[str], end: str, variable: str | None, is_sized: bool) -> Any:
-    """The topography of an instrument's file; `is_sized`: the caller says how large it is."""
+    """The topography of an instrument's file; `is_sized`: the caller gives its size."""
     try:
         open_topography = importlib.import_module("SurfaceTopography").open_topography
     except ImportError as error:
@@ -45,7 +45,7 @@ def of_instrument(path: str | os.PathLike[str], end: str, variable: str | None, 
 
 
 def _tried(call: Callable[[], Any], path: str | os.PathLike[str]) -> Any:
-    """What a call of that package returns; its errors, which have many lines, become one."""
+    """The result of a call of this package. Its errors, which have many lines, become one."""
     try:
         return call()
     except OSError:
@@ -56,7 +56,7 @@ def _tried(call: Callable[[], Any], path: str | os.PathLike[str]) -> Any:
 
 
 def _channel(reader: Any, variable: str | None, end: str, path: str | os.PathLike[str]) -> int | None:
-    """The index of the array that is meant; None: the reader's own choice. Arrays of MATLAB may be coordinates, so that one of several must be named."""
+    """The index of the wanted array; None: the reader's own choice. Arrays of MATLAB may be coordinates, so that one of several must be named."""
     channels = _tried(lambda: reader.channels, path)
     maps = {str(channel.name): k for k, channel in enumerate(channels) if channel.dim == 2 and min(channel.nb_grid_pts or (2,)) > 1}
     if variable is not None or (end == ".mat" and maps):

@@ -1,4 +1,4 @@
-"""Lists of points, x y z a line, that are places of a grid: the grid."""
+"""Lists of points, x y z per line, at places of a grid: finds the grid."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from ._not_a_map import EVEN, levels, rises_evenly
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Lists have so few columns: x y z, colours, intensities; and so many lines at least.
+# Lists have at most this many columns: x y z, colours, intensities; and at least this many lines.
 _COLUMNS, _LINES = 8, 6
 
 # At least this part of the places of a grid has a point.
 _LEAST = 0.5
 
-# A grid has at most so many times as many rows as are named.
+# A grid has at most this many times as many rows as are named.
 _WIDEST = 2.0
 
 
@@ -37,10 +37,10 @@ def may_be_list(shape: tuple[int, int]) -> bool:
 
 
 def lattice_of(values: Any) -> Lattice | None:
-    """The grid of a list of points in any order, no place of the grid twice; None if it is none, or if several columns may be coordinates.
+    """The grid of a list of points in any order, with at most one point per place; None if there is no grid, or if several columns may be coordinates.
 
-    Of two columns that name places the first one is x. Heights are in the column behind them, or in the only other one; columns that count are
-    left out, others with a warning. Places that are missing, up to half of them, are NaN, with a warning.
+    Of two columns of coordinates the first one is x. Heights are in the column after them, or in the only other one. Columns that count are skipped, others
+    with a warning. Missing places, up to half of all, are NaN, with a warning.
     """
     if not may_be_list(values.shape):
         return None
@@ -48,7 +48,7 @@ def lattice_of(values: Any) -> Lattice | None:
     places = {k: rungs(values[:, k]) for k in range(columns)}
     parts = {(a, b): _part(places[a], places[b]) for a, b in combinations(range(columns), 2)}
     pairs = [pair for pair, part in parts.items() if part == 1.0] or [pair for pair, part in parts.items() if part >= _LEAST]
-    # A tilted plane over x and y is a coordinate, too.
+    # A tilted plane over x and y is a coordinate as well.
     if columns == 3 and (0, 1) in pairs:
         pairs = [(0, 1)]
     if len(pairs) != 1:
@@ -69,7 +69,7 @@ def lattice_of(values: Any) -> Lattice | None:
 
 
 def rungs(values: Any) -> tuple[Doubles, Any]:
-    """The evenly spaced places that a column names, with those between that no line names, and the place of each line; none if they are not even."""
+    """The evenly spaced places of a column, with missing ones between them, and the place of each line; empty if they are not even."""
     found, which = levels(values)
     if len(found) < 2:
         return np.zeros(0), which
@@ -84,7 +84,7 @@ def rungs(values: Any) -> tuple[Doubles, Any]:
 
 
 def _part(one: tuple[Doubles, Any], other: tuple[Doubles, Any]) -> float:
-    """The part of the places of a grid that two columns name; 0 where they name one twice, or no grid."""
+    """The part of the places of a grid that two columns name; 0 if a place occurs twice, or if there is no grid."""
     (x, ix), (y, iy) = one, other
     if min(len(x), len(y)) < 2 or len(np.unique(iy * len(x) + ix)) < len(ix):
         return 0.0

@@ -1,4 +1,4 @@
-"""Tilt and form of a surface: fitted by least squares and removed."""
+"""Tilt and form of a surface, fitted by least squares and removed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ._heights import Heights, blocks, refuse_others
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Normal equations are singular if their eigenvalues differ by more than round-off lets them: 2^-52 times a million terms.
+# Normal equations are singular if the ratio of their eigenvalues is round-off: 2^-52 times a million terms.
 _SINGULAR = 1e-10
 
 # Powers of x and y of each form.
@@ -32,11 +32,11 @@ class Form:
     Attributes
     ----------
     kind : {"mean", "plane", "quadric"}
-        Which terms it has.
+        The terms of the polynomial.
     coefficients : tuple of float
-        Of 1; x, y; x^2, x y, y^2.
+        Coefficients of 1; of x and y; of x^2, x y and y^2.
     rms : float
-        Root mean square of the heights that are left.
+        Root mean square of the remaining heights.
     """
 
     kind: str
@@ -69,7 +69,7 @@ def form(heights: Heights, kind: str = "plane") -> Form:
     Parameters
     ----------
     heights : Heights
-        Without spikes and fill values: each counts with its square.
+        Heights without spikes and fill values, because each counts with its square.
     kind : {"mean", "plane", "quadric"}
         A mean height; a plane; a plane and curvatures. Of a line scan a straight line, and a parabola: across the line
         nothing is tilted.
@@ -106,15 +106,14 @@ def _powers(kind: str, shape: tuple[int, ...]) -> tuple[tuple[int, int], ...]:
 def level(heights: Heights, kind: str = "plane") -> Heights:
     """Heights without their tilt or form, fitted by least squares.
 
-    A least-squares plane is a convention of metrology. A body that is free to tilt takes another one: `balance`. With a period, only "mean" leaves
-    the period whole.
+    A least-squares plane is a convention of metrology. A body that is free to tilt has another tilt: `balance`. With a period only "mean" keeps the period.
 
     Parameters
     ----------
     heights : Heights
-        Without spikes and fill values.
+        Heights without spikes and fill values.
     kind : {"mean", "plane", "quadric"}
-        See `form`. "quadric" also removes the curvature; add the ideal form by a gap of its own where it belongs to the contact.
+        See `form`. "quadric" also removes the curvature; if the ideal form belongs to the contact, add it with its own gap.
     """
     refuse_others(heights=heights)
     is_tilted = {"x": heights.z.shape[1] > 1, "y": heights.z.shape[0] > 1}
@@ -125,10 +124,10 @@ def level(heights: Heights, kind: str = "plane") -> Heights:
 
 
 def border_jumps(heights: Heights) -> tuple[float, float]:
-    """How much larger steps across the border are than steps inside, in x and in y, as ratios of root mean squares.
+    """The ratio of steps across the border to steps inside, in x and in y, as root mean squares.
 
-    About 1 where a surface repeats itself with the grid as its period; much larger where it does not, or where a tilt is left. NaN: no two neighbours
-    inside, or across the border, were both measured.
+    About 1 if the grid is a period of the surface; much larger if it is not, or if a tilt remains. NaN: no two neighbours inside, or across the border, were
+    both measured.
     """
 
     refuse_others(heights=heights)

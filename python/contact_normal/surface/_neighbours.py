@@ -1,4 +1,4 @@
-"""What the neighbours of an element say of its height."""
+"""Estimates of the height of an element from its neighbours."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ if TYPE_CHECKING:
 
     from .._arguments import Doubles
 
-# Of the four pairs of opposite neighbours so many can do without lines and planes.
+# With this number of the four pairs of opposite neighbours lines and planes are not needed.
 _PAIRS = 3
 
 
 def _padded(z: Doubles, period: str | None, width: int = 1) -> Doubles:
-    """With more elements on each side: NaN, or with a period those of the other side. An element alone in its direction is no neighbour of itself."""
+    """The array with more elements on each side: NaN, or with a period those of the other side. A single element in a direction is not its own neighbour."""
     padded, inner = np.pad(z, width, constant_values=np.nan), slice(width, -width)
     if period in ("x", "xy") and z.shape[1] > width:
         padded[inner, :width], padded[inner, -width:] = z[:, -width:], z[:, :width]
@@ -28,33 +28,33 @@ def _padded(z: Doubles, period: str | None, width: int = 1) -> Doubles:
 
 
 def _nearest(said: Doubles, height: Doubles) -> Doubles:
-    """Of each column the value that is nearest to a height; NaN where none is."""
+    """For each column the value that is nearest to a height; NaN if there is none."""
     off = np.where(np.isnan(said), np.inf, np.abs(said - height))
     return np.asarray(np.take_along_axis(said, off.argmin(axis=0)[None], axis=0)[0])
 
 
 def _around(z: Doubles, period: str | None, at: Any, reach: int) -> Doubles:
-    """The eight neighbours of some elements, or what is in these directions farther away; NaN where an element lacks."""
+    """The eight neighbours of some elements, or the elements in these directions at a distance `reach`; NaN for missing ones."""
     padded, (rows, columns) = _padded(z, period, reach), at
     return np.stack([padded[rows + reach * j, columns + reach * i] for j in range(3) for i in range(3) if (j, i) != (1, 1)])
 
 
 def _said_around(z: Doubles, period: str | None, at: Any, reach: int, only_between: bool) -> Doubles:
-    """What pairs of opposite neighbours say of some elements, and, where most pairs lack, lines along the axes from one side and planes through three
-    neighbours."""
+    """Estimates for some elements by pairs of opposite neighbours. If most pairs are missing, also by lines along the axes from one side, and by planes through
+    three neighbours."""
     around = _around(z, period, at, reach)
     means = 0.5 * (around[:4] + around[:3:-1])
     if only_between:
         return means
     on_axes = [1, 3, 4, 6]
     lines = 2.0 * around[on_axes] - _around(z, period, at, 2 * reach)[on_axes]
-    # Two neighbours on the axes and the one between them, by their places among the eight.
+    # Two neighbours on the axes and the one between them, by their indices among the eight.
     planes = np.stack([around[one] + around[other] - around[between] for one, other, between in ((1, 3, 0), (1, 4, 2), (6, 3, 5), (6, 4, 7))])
     return np.concatenate([means, np.where(np.isfinite(means).sum(axis=0) < _PAIRS, np.concatenate([planes, lines]), np.nan)])
 
 
 def _said_along(z: Doubles, is_period: bool, at: npt.NDArray[np.intp], only_between: bool) -> Doubles:
-    """What a line says of some of its elements: the next ones on both sides, and each side by its next two; where one side has none, the next one, too."""
+    """Estimates for elements of a line: by the next ones on both sides, and on each side by the next two. If one side has none, also by the next one."""
     count = len(z)
     places = np.flatnonzero(np.isfinite(z))
     if is_period:
@@ -82,9 +82,9 @@ def _said_along(z: Doubles, is_period: bool, at: npt.NDArray[np.intp], only_betw
 
 
 def said_by_neighbours(z: Doubles, period: str | None, at: Any, height: Doubles, reach: int = 1, only_between: bool = False) -> Doubles:
-    """Of what the neighbours of some elements say of their heights without the slope, the nearest to `height`: the pair along a crest or a step says the
-    height, no pair says that of a spike. On a map neighbours are so many elements away. NaN where no neighbours are. With `only_between` but elements on
-    both sides say something: a plane or a line from one side through another spike may say the height of a spike."""
+    """For some elements the estimate from their neighbours that is nearest to `height`. On a crest or a step the pair along it gives the height, but for a
+    spike no pair does. On a map neighbours have a distance of `reach` elements. NaN without neighbours. With `only_between` only elements on both sides are
+    used, because a plane or a line from one side through another spike may give the height of a spike."""
     if 1 not in z.shape:
         return _nearest(_said_around(z, period, at, reach, only_between), height)
     along = 1 if z.shape[0] == 1 else 0
@@ -92,7 +92,7 @@ def said_by_neighbours(z: Doubles, period: str | None, at: Any, height: Doubles,
 
 
 def neighbours_median(z: Doubles, period: str | None) -> Doubles:
-    """The median of the up to eight neighbours of each element; NaN where there are none."""
+    """The median of the up to eight neighbours of each element; NaN without any."""
     padded = _padded(z, period)
     median = np.empty(z.shape)
     for rows in blocks(z.shape):
@@ -107,7 +107,7 @@ def neighbours_median(z: Doubles, period: str | None) -> Doubles:
 
 
 def all_but_single(z: Doubles, period: str | None) -> bool:
-    """Whether all heights are equal but those of single elements, of which no two are neighbours or alike."""
+    """Whether all heights are equal except those of single elements, no two of which are neighbours or equal."""
     known = np.isfinite(z)
     others = known & (z != np.median(z[known]))
     padded = _padded(others.astype(float), period) == 1.0

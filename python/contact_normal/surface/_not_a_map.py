@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-# Steps are even if they differ by this part. Coordinates of a stage have noise.
+# Steps are even if they differ by at most this part. Coordinates of a stage have noise.
 EVEN = 0.01
 
 # Lists have few columns and many lines.
@@ -15,10 +15,10 @@ _COLUMNS, _MANY, _LINES = 4, 8, 8
 # Ranges of columns of heights differ by less than this factor.
 _ALIKE = 3.0
 
-# Coordinates are multiples of half a step to this part of it.
+# Coordinates are multiples of half a step to this part of the step.
 _MULTIPLE = 1e-3
 
-# Maps of few columns are strips; of so many times as many lines there are hardly any.
+# Maps with few columns are strips; strips with this ratio of lines to columns are rare.
 _LONG = 25
 
 _PLACES = "places of a grid, at least half of them and none twice, and no size is given"
@@ -27,13 +27,13 @@ _INSTEAD = ("others must be interpolated on a grid (scipy.interpolate.griddata) 
 
 
 def why(values: Any, steps: tuple[float | None, float | None] = (None, None)) -> str | None:
-    """Why these numbers are no map, if they are none. `steps`: the distances of columns and of lines, as far as they are known."""
+    """The reason for which these numbers are no map, if there is one. `steps`: the distances of columns and of lines, as far as known."""
     lines, columns = values.shape
     if _are_points(values):
         return (f"has x, y and z of {lines} points, which are read where they are {_PLACES}; {_INSTEAD}")
     if 1 < columns <= _MANY and lines >= max(_LINES, 2 * columns + 1):
         found = [k for k in range(columns) if rises_evenly(values[:, k]) or _has_even_levels(values[:, k])]
-        # Strips of heights of few digits have even levels, too: of many columns two must be coordinates.
+        # Strips of heights with few digits have even levels as well: with many columns two of them must be coordinates.
         if len(found) > (columns > _COLUMNS):
             return (f"has {lines} lines of {columns} numbers, of which number {found[0] + 1} is a coordinate or a count: a list of points. Lists are read where "
                     f"their points are {_PLACES}; {_INSTEAD}")
@@ -48,7 +48,7 @@ def why(values: Any, steps: tuple[float | None, float | None] = (None, None)) ->
 
 
 def doubt(values: Any) -> str | None:
-    """What may be wrong with a map, for a warning."""
+    """A possible error of a map, for a warning."""
     lines, columns = values.shape
     for name, _ in _straight_firsts(values):
         return f"has a straight first {name}, which is read as heights: if these are coordinates, leave it out"
@@ -58,7 +58,7 @@ def doubt(values: Any) -> str | None:
 
 
 def _straight_firsts(values: Any) -> list[tuple[str, Any]]:
-    """The line or the column that rises evenly as the first, where no other one does; each with the rows that it is the first of."""
+    """The line or the column that, as the only one, is first and rises evenly; each with the rows of which it is the first."""
     if min(values.shape) <= _COLUMNS:
         return []
     both = (("line", values), ("column", values.T))
@@ -66,8 +66,8 @@ def _straight_firsts(values: Any) -> list[tuple[str, Any]]:
 
 
 def _lies_among(rows: Any) -> bool:
-    """Whether the first row has heights as the others have: a broken line of a scan, levelled with the map, is straight. Coordinates begin at a multiple of
-    half a step, or lie far off; heights of a line that was levelled alone have the mean 0."""
+    """Whether the first row has heights like the others: a faulty line of a scan that was levelled with the map is straight. Coordinates begin at a multiple of
+    half a step, or far away; heights of a line that was levelled alone have the mean 0."""
     if not np.isfinite(rows[1:, 1:]).any():
         return False
     first, (low, high) = rows[0, 1:], (np.nanmin(rows[1:, 1:]), np.nanmax(rows[1:, 1:]))
@@ -78,7 +78,7 @@ def _lies_among(rows: Any) -> bool:
 
 
 def _goes_by(rows: Any, step: float | None) -> bool:
-    """Whether the first row may have coordinates of this step, in any decimal unit, or counts."""
+    """Whether the first row may have coordinates with this step, in any decimal unit, or counts."""
     mean = abs(np.diff(rows[0, 1:]).mean())
     if step is None or abs(mean - round(mean)) <= _MULTIPLE and mean > 0.5:
         return True
@@ -87,7 +87,7 @@ def _goes_by(rows: Any, step: float | None) -> bool:
 
 
 def _is_strip(values: Any) -> bool:
-    """Whether four columns are all of one kind: heights. Coordinates have larger ranges than heights, or others."""
+    """Whether four columns are all heights. Coordinates have larger or different ranges."""
     if values.shape[1] != _COLUMNS or not (np.isfinite(values).sum(0) > 1).all():
         return False
     low, middle, high = np.nanquantile(np.where(np.isfinite(values), values, np.nan), [0.05, 0.5, 0.95], axis=0)
@@ -95,7 +95,7 @@ def _is_strip(values: Any) -> bool:
 
 
 def rises_evenly(values: Any) -> bool:
-    """Whether steps are all the same, and not 0."""
+    """Whether all steps are equal, and not 0."""
     with np.errstate(invalid="ignore"):
         steps = np.diff(values)
     mean = steps.mean() if len(steps) > 2 else 0.0
@@ -103,7 +103,7 @@ def rises_evenly(values: Any) -> bool:
 
 
 def levels(values: Any) -> tuple[Any, Any]:
-    """Values that are close together are one level: the levels, rising, and that of each value. None where a value is not finite."""
+    """Groups close values into levels: the levels in increasing order, and the level of each value. None if a value is not finite."""
     if not np.isfinite(values).all() or np.ptp(values) == 0.0:
         return np.zeros(0), np.zeros(0, dtype=int)
     order = np.argsort(values, kind="stable")
@@ -116,7 +116,7 @@ def levels(values: Any) -> tuple[Any, Any]:
 
 
 def _has_even_levels(values: Any) -> bool:
-    """Whether these are few values with even steps between, each several times."""
+    """Whether the values have few levels with even steps, each several times."""
     places, which = levels(values)
     if not (len(places) > 2 and len(values) >= 2 * len(places) and rises_evenly(places)):
         return False
@@ -124,7 +124,7 @@ def _has_even_levels(values: Any) -> bool:
 
 
 def _are_points(values: Any) -> bool:
-    """Whether three columns are x, y and z: the first two name most places of a grid, each once."""
+    """Whether three columns are x, y and z: the first two name most places of a grid, each at most once."""
     if values.shape[1] != 3 or len(values) < 4 or not np.isfinite(values[:, :2]).all():
         return False
     counts = [len(np.unique(values[:, k])) for k in range(2)]

@@ -1,4 +1,4 @@
-"""The gap of two surfaces, and the tilt that a free body takes under a load."""
+"""The gap of two surfaces, and the tilt of a free body under a load."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ if TYPE_CHECKING:
     from .._arguments import Both, Doubles
     from .._result import Result
 
-# Newton steps of a search; each takes one solve, or some where it must be shortened.
+# The largest number of steps of a search. Each takes one solve, or several if it must be shortened.
 _STEPS = 60
-# A first change of the tilt lifts one side by this part of the approach.
+# The first change of the tilt lifts one side by this part of the approach.
 _TRIAL = 0.1
 # Changes of the centre by tilts are singular below this part of the largest.
 _SINGULAR = 1e-9
-# The shortest part of a step that is tried.
+# The shortest fraction of a step.
 _SHORTEST = 1.0 / 64.0
 
 
 def gap(lower: Heights, upper: Heights | None = None, *, turned: str = "y") -> Gap:
-    """The gap of a surface and a plane, or of two surfaces face to face.
+    """The gap of a surface and a plane, or of two facing surfaces.
 
-    The undeformed distance is 0 where the surfaces touch first, and +inf at holes of either: no pressures are there.
+    The undeformed distance is 0 at the point of first contact, and +inf at holes of either surface, which carry no pressure.
 
     Parameters
     ----------
     lower : Heights
         A surface; heights are positive out of the material.
     upper : Heights, optional
-        The other one, measured like the first, from outside. None: a plane.
+        The other surface, measured like the first one, from outside. None: a plane.
     turned : {"y", "x", ""}
-        About which axis the upper body is turned over to lie on the lower one. "": its array is already laid out as it will lie.
+        The axis about which the upper body is turned over to lie on the lower one. "": its array has its final layout.
     """
     refuse_others(lower=lower, **({} if upper is None else {"upper": upper}))
     for one in (lower, upper):
@@ -68,8 +68,8 @@ def gap(lower: Heights, upper: Heights | None = None, *, turned: str = "y") -> G
 
 
 def e_star(young_modulus: Both, poisson_ratio: Both) -> float:
-    """E* of two bodies: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, 1985, section 4.2). One value stands for both bodies, inf for
-    a rigid one."""
+    """E* of two bodies: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, 1985, section 4.2). One value stands for both bodies, inf for a
+    rigid one."""
     sum_of = 0.0
     for body in range(2):
         young, nu = (number(name, value if np.ndim(value) == 0 else two(name, value)[body])
@@ -82,7 +82,7 @@ def e_star(young_modulus: Both, poisson_ratio: Both) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Balanced:
-    """What `balance` found; where `result.status` is not `OK`, what it had so far.
+    """The result of `balance`; if `result.status` is not `OK`, its last state.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class Balanced:
     result : Result
         The solve of this gap.
     centre : (float, float)
-        Centre of the pressures.
+        The centre of the pressures.
     """
 
     gap: Gap
@@ -108,7 +108,7 @@ def _tilted(gap: Gap, tilt: Doubles) -> Gap:
 
 
 def _start(gap: Gap) -> Doubles:
-    """The slopes of the least-squares plane, where this plane is most of the undeformed distance; else 0, and the body rests as it lies."""
+    """The slopes of the least-squares plane, if the undeformed distance is mainly this plane; otherwise 0."""
     iy, ix = np.nonzero(np.isfinite(gap.h))
     if len(iy) < 3:
         return np.zeros(2)
@@ -118,15 +118,15 @@ def _start(gap: Gap) -> Doubles:
 
 
 def _centre(gap: Gap, result: Result) -> Doubles:
-    """Centre of the pressures, in coordinates of the gap."""
+    """The centre of the pressures, in coordinates of the gap."""
     total = result.pressure.sum()
-    # A solve that was ended at once has no pressures yet.
+    # A solve that was ended at once has no pressures.
     weights = result.pressure / (total if total != 0.0 else np.nan)
     return np.array([weights.sum(axis=0) @ gap.x, weights.sum(axis=1) @ gap.y])
 
 
 def _checked(gap: Gap, force: float, at: tuple[float, float], tolerance: float, scene: dict[str, Any]) -> Doubles:
-    """Where the force acts; refuses what cannot be balanced."""
+    """The point at which the force acts; refuses scenes that cannot be balanced."""
     if not isinstance(gap, Gap):
         raise TypeError(f"gap is a {type(gap).__name__}; it must be a Gap: surface.gap(heights)")
     if period := scene.get("period", gap.period):
@@ -142,30 +142,30 @@ def _checked(gap: Gap, force: float, at: tuple[float, float], tolerance: float, 
 
 
 def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolerance: float = 1e-4, **scene: Any) -> Balanced:
-    """The tilt that a body takes which is pressed on by a force at a point and free to tilt: the moments of the pressures about this point are 0.
+    """Finds the tilt of a body that a force at a point presses, and that is free to tilt: the moments of the pressures about this point are 0.
 
-    Unlike a least-squares plane it depends on the load: a body rests on its summits. The tilt minimises a convex energy, so it is the only one. It is
-    found by Newton's method with Broyden's updates: in four to ten solves for smooth bodies, some tens where few elements of a rough body carry the force.
-    The search begins anew from the tilt on which a rigid body rests once that of the surface leads nowhere. In a direction in which the elements
-    with a surface do not extend, as those of one row, nothing is tilted.
+    Unlike a least-squares plane it depends on the load: a body rests on its summits. The tilt minimises a convex energy, so it is unique. It is found by
+    Newton's method with Broyden's updates: in four to ten solves for smooth bodies, in some tens if few elements of a rough body carry the force. If the search
+    from the tilt of the surface fails, it begins again from the tilt on which a rigid body rests. In a direction without extent of the elements with a surface,
+    as across one row, there is no tilt.
 
     Parameters
     ----------
     gap : Gap
-        Without a period: a body that repeats itself cannot tilt.
+        A gap without a period, because a periodic body cannot tilt.
     force : float
         Normal force; not 0.
     at : (float, float)
-        Where the force acts, in coordinates of the gap.
+        The point at which the force acts, in coordinates of the gap.
     tolerance : float
-        How close the centre of the pressures must come to `at`, relative to the length of the grid.
+        Tolerance of the centre of the pressures, relative to the length of the grid.
     **scene
         Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all solves together.
 
     Returns
     -------
     Balanced
-        Where a solve was cancelled, or `max_seconds` is over: the tilt of the last solve, and `result.status` tells.
+        If a solve was cancelled, or `max_seconds` is over: the tilt of the last solve, with the reason in `result.status`.
 
     Raises
     ------
@@ -212,22 +212,23 @@ def _balanced(gap: Gap, tilt: Doubles, result: Result, centre: Doubles) -> Balan
 
 
 def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles], tuple[Result, Doubles]], tilt: Doubles, rests: bool) -> tuple[Balanced, bool]:
-    """The tilt whose pressures have their centre at `aim`, from a first one; and whether it was found. `solved` returns the result of a tilt, and how far
-    its centre is off. Where a rigid body `rests` on the first one, the approach is what a change of it is measured by, however small."""
+    """The tilt whose pressures have their centre at `aim`, beginning with a first one, and whether it was found. `solved` returns the result of a tilt, and the
+    offset of its centre. If a rigid body `rests` on the first tilt, changes of the tilt are scaled by the approach, however small."""
     sizes = np.array([gap.h.shape[1] * gap.dx, gap.h.shape[0] * gap.dy])
     result, off = solved(tilt)
     begun = _tilted(gap, tilt).h
     least = 0.0 if rests and result.approach > 0.0 else 1e-3 * float(np.ptp(begun[np.isfinite(begun)]))
     trial = _TRIAL * max(result.approach, least) / sizes
     slopes, known = np.eye(2), np.isfinite(gap.h)
-    # Of elements in one line across a direction the centre stays in it.
+    # If all elements are in one line along an axis, the centre stays on this line.
     for k in (k for k in range(2) if np.count_nonzero(known.any(axis=k)) > 1):
         step = np.where(np.arange(2) == k, trial * -np.sign(off + 1e-300), 0.0)
         slopes[:, k] = (solved(tilt + step)[1] - off) / step[k]
     for _ in range(_STEPS):
         if np.abs(off / sizes).max() <= tolerance:
             return _balanced(gap, tilt, result, off + aim), True
-        # Of elements in one line askew to the grid one tilt does nothing. Lengths are relative, so that no side of an element is round-off.
+        # If all elements are in one line oblique to the grid, one combination of tilts has no effect. Lengths are relative, so that no side of an element is
+        # round-off.
         relative = slopes / np.outer(sizes, sizes)
         unit = np.abs(relative).max()
         if not (np.isfinite(unit) and unit > 0.0):
@@ -241,7 +242,7 @@ def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles]
             if np.abs(there / sizes).max() < np.abs(off / sizes).max() or part < _SHORTEST:
                 break
             part *= 0.5
-        # From where a body rests there is no other search.
+        # From the tilt on which a body rests there is no other search.
         if part < _SHORTEST and not rests:
             break
         step = part * step

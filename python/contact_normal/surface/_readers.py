@@ -1,4 +1,4 @@
-"""Heights from files: numpy's own and text; instruments' by SurfaceTopography; NetCDF by xarray."""
+"""Heights from files: those of numpy and texts; files of instruments by SurfaceTopography; NetCDF by xarray."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from ._texts import has_empty_cells, of_text
 def from_xarray(array: Any, **given: Any) -> Heights:
     """Heights of an `xarray.DataArray` with two dimensions that have coordinates, in any order.
 
-    The dimension of x is the one whose name begins with "x", or else the second one, or with axes="xy" the first one. Units of lengths are those of the attribute "units", if x, y and
-    the heights have it; units that differ are refused. With dx, size, span, or x and y the coordinates are not read. The attributes "unit" and "periodic"
-    are those of SurfaceTopography's files: the unit, and a direction in which the surface repeats itself.
+    The dimension of x is the one whose name begins with "x", otherwise the second one, or with axes="xy" the first one. Units of lengths are those of the
+    attribute "units", if x, y and the heights have it; different units are refused. With dx, size, span, or x and y the coordinates are not read. The
+    attributes "unit" and "periodic" are those of SurfaceTopography's files: the unit, and a direction in which the surface is periodic.
     """
     if hasattr(array, "data_vars") or not hasattr(array, "dims"):
         choose = f": choose one of {', '.join(map(str, array.data_vars))}" if hasattr(array, "data_vars") else ""
@@ -69,7 +69,7 @@ def from_xarray(array: Any, **given: Any) -> Heights:
 
 
 def _unit(attributes: Any) -> Any:
-    """What the attributes say is the unit, by the conventions of NetCDF or by SurfaceTopography."""
+    """The unit in the attributes, by the conventions of NetCDF or by SurfaceTopography."""
     return attributes.get("units") or attributes.get("unit")
 
 
@@ -102,9 +102,9 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         Gwyddion writes it says the size of the field and the unit. `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd`, `.gwy`
         and `.mat`, by the package SurfaceTopography. The rows of a matrix of `.mat` are those of y. Heights and coordinates must be in one unit of length.
     variable : str, optional
-        Which array of a file that has several.
+        The name of the array, if the file has several.
     **given
-        What the file does not tell, or tells wrong: see `heights`. `units` may name no other unit of length than the file does.
+        Arguments that are missing in the file, or wrong: see `heights`. `units` must name the unit of length of the file.
 
     Raises
     ------
@@ -116,18 +116,18 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         raise IsADirectoryError(f"{path} is a folder; it must be a file")
     if end in (".npy", ".npz"):
         values = _of_numpy(path, variable)
-        # Of masked arrays and others heights says what is wrong.
+        # For masked arrays and others `heights` has the error messages.
         is_plain = values.ndim == 2 and values.dtype.kind in "iuf"
         return _of_numbers(path, values, given) if is_plain else heights(values, **given)
     if end in (".asc", ".txt", ".dat") and Path(path).exists():
         refuse_esri_grid(path)
-    # Some instruments write binary files of these ends.
+    # Some instruments write binary files with these endings.
     of_numbers = end in (".txt", ".dat", ".csv") and is_text(path)
-    # SurfaceTopography would move the columns behind an empty cell.
+    # SurfaceTopography would shift the columns after an empty cell.
     if of_numbers or end in (".tsv", ".asc") and Path(path).exists() and is_text(path) and has_empty_cells(path):
         told = header_of(path, bool(SIZES & set(given)))
         if given.get("axes") == "xy" and told.get("size"):
-            # Width is that of the columns of the file, which are y then.
+            # The width is that of the columns of the file, which are y then.
             told = {**told, "size": told["size"][::-1]}
         made = _of_numbers(path, of_text(path, end), with_header(told, given))
         _warn_of_size(path, told, made)
@@ -167,7 +167,7 @@ def _of_netcdf(path: str | os.PathLike[str], variable: str | None, given: dict[s
 
 
 def _warn_of_size(path: str | os.PathLike[str], told: dict[str, Any], made: Heights) -> None:
-    """Warns of a size that is not that of the header, by more than a caller's n - 1 for n."""
+    """Warns if the size differs from that of the header, by more than that of n - 1 elements instead of n."""
     if not told.get("size"):
         return
     for name, n, d, length in zip("xy", made.z.shape[::-1], (made.dx, made.dy), told["size"]):

@@ -1,5 +1,4 @@
-//! A callback runs in the host's floating-point environment, may write into the caller's arrays, and may not use the handle that is
-//! solving.
+//! A callback runs in the floating-point environment of the host. It may write into the caller's arrays, but not use the handle that is solving.
 
 use std::hint::black_box;
 use std::ptr::{null, null_mut};
@@ -23,10 +22,10 @@ const UPWARD: c_int = 0x400000;
 #[cfg(target_arch = "aarch64")]
 const DOWNWARD: c_int = 0x800000;
 
-/// A third, rounded to nearest: which is down.
+/// One third, rounded to nearest, which is downwards.
 const DOWN: f64 = 1.0 / 3.0;
 
-/// The rounding mode that arithmetic has: a library call might tell that of another unit.
+/// The rounding mode of double arithmetic, by computing. A library call might report that of another unit.
 fn rounding() -> c_int {
     let third = |sign: f64| black_box(sign) / black_box(3.0);
     match (third(1.0) > DOWN, third(-1.0) < -DOWN) {
@@ -36,11 +35,11 @@ fn rounding() -> c_int {
     }
 }
 
-/// What a callback found and does.
+/// The state of a callback: what it records, and what it does.
 struct Watch {
-    /// Rounding modes at its beginnings.
+    /// The rounding mode at the beginning of each call.
     modes: Vec<c_int>,
-    /// The mode that it leaves.
+    /// The mode that the callback leaves set.
     leaves: c_int,
     /// A solve inside it.
     inner: Option<Call>,
@@ -91,7 +90,7 @@ unsafe extern "C" fn surface(mx: i32, my: i32, dx: f64, dy: f64, h: *mut f64, us
     0
 }
 
-/// Runs a call in the mode DOWNWARD; the mode afterwards.
+/// Runs a call in the mode DOWNWARD; returns the mode afterwards.
 fn downward(call: impl FnOnce()) -> c_int {
     // SAFETY: the rounding mode of this thread, nearest (0) again before Rust computes.
     unsafe {
@@ -119,7 +118,7 @@ fn a_callback_runs_in_the_environment_of_the_host_and_changes_no_bit() {
             call.options.known.progress = Some(progress);
             call.options.known.user = (&raw mut watch).cast();
             let after = downward(|| solved(&mut call));
-            // What the callback leaves the host finds, in the next callback and afterwards.
+            // The host has the mode that the callback left, in the next callback and after the call.
             assert_eq!(watch.modes[0], DOWNWARD);
             assert!(watch.modes[1..].iter().all(|&mode| mode == leaves), "{:?}", watch.modes);
             assert_eq!(after, leaves);
@@ -153,7 +152,7 @@ fn so_do_the_surface_and_the_log() {
     solved(&mut undisturbed);
     let mut watch = Watch { modes: Vec::new(), leaves: UPWARD, inner: None };
     WATCHED.set(true);
-    // SAFETY: the callback and what it is told live until it is taken away.
+    // SAFETY: the callback and its data live until it is removed.
     unsafe {
         assert_eq!(contact_normal_set_log(Some(log), CONTACT_NORMAL_LOG_INFO, (&raw mut watch).cast()), 0);
     }
@@ -190,7 +189,7 @@ unsafe extern "C" fn misuse(_: *const contact_normal_progress, user: *mut c_void
         outcomes.push((contact_normal_solver_fields(*handle, &mut call.fields.known), last_error()));
         outcomes.push((contact_normal_solver_set_influence(*handle, &call.influence.known, null()), last_error()));
         outcomes.push((contact_normal_solver_free(*handle), last_error()));
-        // A handle of its own it may use.
+        // The callback may use another handle.
         let own = Handle::of(call);
         assert_eq!(call.run(Through::SolverSolve, own.0).0, CONTACT_NORMAL_OK);
     }
@@ -215,20 +214,20 @@ fn a_handle_that_is_solving_refuses_to_be_used_or_freed() {
         assert_refused(outcome, CONTACT_NORMAL_INVALID_ARGUMENT, &["solver", "in use", "callback"]);
     }
     assert_eq!(call.pressure, undisturbed.pressure);
-    // It is as good as before.
+    // The handle still solves.
     call.options.known.progress = None;
     assert_eq!(call.run(Through::SolverSolve, handle.0), (CONTACT_NORMAL_OK, String::new()));
     assert_eq!(call.pressure, undisturbed.pressure);
 }
 
-/// Arrays that a callback spoils.
+/// Arrays that a callback overwrites.
 struct Spoilt {
     numbers: Vec<(*mut f64, usize)>,
     patch: (*mut i32, usize),
 }
 
 unsafe extern "C" fn spoil(_: *const contact_normal_progress, user: *mut c_void) -> i32 {
-    // SAFETY: the arrays of the call, which nobody else looks at now.
+    // SAFETY: the arrays of the call, which nothing else reads now.
     unsafe {
         let spoilt = &mut *user.cast::<Spoilt>();
         for &(start, n) in &spoilt.numbers {
@@ -253,7 +252,7 @@ fn what_the_effects_hold_is_read_before_a_callback_runs() {
     ];
     for (k, effect) in effects.into_iter().enumerate() {
         for through in [Through::Solve, Through::ToAccuracy] {
-            // An accuracy takes neither own coefficients nor values per element of one grid: the plain scene.
+            // An accuracy refuses own coefficients and values per element: it gets the plain scene.
             let change = |call: &mut Call| {
                 if through == Through::Solve {
                     effect(call)

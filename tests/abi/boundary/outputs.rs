@@ -1,4 +1,4 @@
-//! What is not wanted may be NULL, and the report says to what tolerance it holds.
+//! Unwanted outputs may be NULL, and the report has the tolerance that its result meets.
 
 use std::ptr::{null, null_mut};
 
@@ -24,7 +24,7 @@ fn without_fields_the_report_is_the_same() {
         );
         assert!(found.normal.force > 0.0 && call.pressure == before);
     }
-    // What must be read has to be there.
+    // Arrays that are read must be given.
     for (name, change) in [
         ("fields->contact", (|c: &mut Call| c.fix_contact()) as fn(&mut Call)),
         ("fields->pressure", |c| c.options.known.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_GIVEN),
@@ -68,7 +68,7 @@ fn the_report_has_the_tolerance_that_was_met() {
             early.normal.residual,
             early.normal.tolerance
         );
-        // The methods that start on coarser grids know an error to stop at.
+        // Only methods that start on coarser grids know an error at which they can stop.
         let knows = ![CONTACT_NORMAL_METHOD_NORM, CONTACT_NORMAL_METHOD_MULTIGRID].contains(&method);
         assert_eq!(early.normal.tolerance > 1e-9, knows, "method {method}: {:e}", early.normal.tolerance);
     }

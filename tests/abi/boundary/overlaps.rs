@@ -1,4 +1,4 @@
-//! What a call writes overlaps with nothing else that it reads or writes, in every call.
+//! The outputs of a call overlap with none of its other inputs and outputs, in every function.
 
 use std::ptr::{null, null_mut};
 
@@ -10,7 +10,7 @@ const INVALID: i32 = CONTACT_NORMAL_INVALID_ARGUMENT;
 const N: usize = MX * MY;
 const HALF: [f64; 4] = [1.0, 0.5, 0.5, 1.0];
 
-/// What the message names, and what makes two of them overlap.
+/// The names in the message, and the change that makes two arrays overlap.
 type Row = (&'static [&'static str], fn(&mut Call));
 
 #[rustfmt::skip]
@@ -36,7 +36,7 @@ const ROWS: &[Row] = &[
     (&["pressure", "factors"], |c| { c.use_patches(HALF); c.fields.known.pressure = c.factors.as_mut_ptr(); }),
     (&["pressure", "influence->coefficients"], |c| { c.use_table(); c.fields.known.pressure = c.table.as_mut_ptr(); }),
     (&["pressure", "row_tables->coefficients"], |c| { c.use_row_tables(); c.fields.known.pressure = c.tables.as_mut_ptr(); }),
-    // What is const is never written.
+    // Structs that are const are never written.
     (&["pressure", "scene"], |c| c.fields.known.pressure = (&raw mut c.scene.known).cast()),
     (&["pressure", "options"], |c| c.fields.known.pressure = (&raw mut c.options.known).cast()),
     (&["pressure", "fields"], |c| c.fields.known.pressure = (&raw mut c.fields.known).cast()),
@@ -86,10 +86,10 @@ fn problems_of_a_batch_share_nothing_that_is_written() {
         (status, last_error())
     };
     let statuses = statuses.as_mut_ptr();
-    // Two scenes may share what is read.
+    // Two scenes may share inputs.
     calls[1].scene.known.undeformed_distance = calls[0].h.as_ptr();
     assert_eq!(batch(&calls, statuses).0, CONTACT_NORMAL_OK);
-    // What one writes the other reads.
+    // An output of one problem is an input of the other.
     calls[1].scene.known.undeformed_distance = calls[0].fields.known.pressure;
     assert_refused(batch(&calls, statuses), INVALID, &["pressure of problem 0", "undeformed_distance of problem 1"]);
     calls[1].scene.known.undeformed_distance = calls[1].h.as_ptr();
@@ -132,8 +132,8 @@ fn the_other_calls_refuse_overlaps_too() {
     assert_refused((status, last_error()), INVALID, &["pressure", "displacement", "overlap"]);
 }
 
-/// Every placement of four arrays in a row of places of 8 bytes, beside the definition: distances (3 places, read), the factors of one
-/// patch (1 place, read), pressures (3 places, written) and the contact area (a place and a half, written).
+/// Every placement of four arrays in a row of places of 8 bytes, compared with the definition of an overlap: distances (3 places, read), the factors
+/// of one patch (1 place, read), pressures (3 places, written) and the contact area (a place and a half, written).
 #[test]
 fn what_is_written_overlaps_with_nothing() {
     const PLACES: usize = 9;

@@ -5,7 +5,7 @@ use std::ptr::null_mut;
 use crate::call::{last_error, Call, Through};
 use contact_normal::ffi::*;
 
-/// Each struct of 0.2 has this size, for ever.
+/// The size of each struct in version 0.2, for ever.
 const SIZES: [(&str, i64); 13] = [
     ("scene", 168),
     ("influence", 32),
@@ -59,7 +59,7 @@ fn a_struct_of_version_0_2_is_accepted_and_a_shorter_one_is_not() {
     }
 }
 
-/// Its destructor calls the library when other data of the thread are gone already.
+/// A value whose destructor calls the library after other data of the thread are gone.
 struct AtTheEnd;
 
 impl Drop for AtTheEnd {
@@ -68,7 +68,7 @@ impl Drop for AtTheEnd {
         let status = unsafe { contact_normal_solve(null_mut(), null_mut(), null_mut(), null_mut()) };
         let says_why = last_error().contains("scene");
         let (solved, _) = Call::new().run(Through::Solve, null_mut());
-        // Nobody hears a panic here.
+        // A panic would not be reported here.
         if status != CONTACT_NORMAL_NULL_POINTER || !says_why || solved != CONTACT_NORMAL_OK {
             std::process::abort();
         }
@@ -82,7 +82,7 @@ thread_local! {
 #[test]
 fn a_thread_that_is_ending_may_still_call() {
     let thread = std::thread::spawn(|| {
-        // Destructors run in the opposite order of the first uses.
+        // Destructors run in the reverse order of first use.
         AT_THE_END.with(|_| {});
         // SAFETY: NULL is refused.
         let status = unsafe { contact_normal_solve(null_mut(), null_mut(), null_mut(), null_mut()) };

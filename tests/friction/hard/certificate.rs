@@ -17,21 +17,21 @@ use super::cases::Case;
 /// Tractions of more than this part of the bound slip (docs/friction.md).
 const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
 
-/// A displacement by round-off of the coefficients, of transforms and of sums, relative to the sum of sizes.
+/// Round-off of coefficients, transforms and sums in a displacement, relative to the sum of absolute values.
 const ROUND_OFF: f64 = 64.0 * f64::EPSILON;
 
-/// What came of a case.
+/// The result of a case.
 #[derive(Debug)]
 pub enum Verdict {
     /// Status OK, and the conditions hold.
     Solved { residual: f64, products: f64 },
-    /// Status OK, and they do not.
+    /// Status OK, but the conditions do not hold.
     Wrong { residual: f64, products: f64, why: String },
     /// Another status.
     Stopped { outcome: Outcome, residual: f64, products: f64 },
-    /// Refused with the status that was expected.
+    /// Refused with the expected status.
     Refused(&'static str),
-    /// Refused with another one, or for no reason.
+    /// Refused with another status, or without a reason.
     RefusedOtherwise(String),
 }
 
@@ -45,7 +45,7 @@ fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
-/// Axx, Ayy and Axy of G = 1 at a place from the centre of the element.
+/// Axx, Ayy and Axy for G = 1 at a place relative to the centre of the element.
 fn coefficients(case: &Case, x: f64, y: f64) -> [f64; 3] {
     let mut sums = [0.0; 3];
     for (sx, sy) in [(0.5, 0.5), (-0.5, 0.5), (0.5, -0.5), (-0.5, -0.5)] {
@@ -58,7 +58,7 @@ fn coefficients(case: &Case, x: f64, y: f64) -> [f64; 3] {
     [(1.0 - case.nu) * a + b, a + (1.0 - case.nu) * b, case.nu * c]
 }
 
-/// Displacements by tractions at places that are `ahead` of the centres in x.
+/// Displacements by tractions, at distances `ahead` in x of the centres.
 fn displace(case: &Case, q: &[Vector], ahead: f64) -> Vec<Vector> {
     let (mx, my) = (case.grid.mx as i64, case.grid.my as i64);
     let reach = |m: i64| 1 - m..m;
@@ -87,7 +87,7 @@ fn rigid_slip(case: &Case, motion: Motion, i: usize, creepage: Vector) -> Vector
     [distance * (creepage[0] - case.spin * y) + own[0], distance * (creepage[1] + case.spin * x) + own[1]]
 }
 
-/// What is left of the slip, relative; and what rounding may leave.
+/// The residual of the slip, relative, and its possible round-off.
 fn residual(case: &Case, motion: Motion, g: &[f64], q: &[Vector], creepage: Vector) -> (f64, f64) {
     let is_steady = motion == Motion::SteadyRolling;
     let given = |i: usize| case.previous.as_ref().map_or([0.0; 2], |before| [before[0][i], before[1][i]]);
@@ -114,14 +114,14 @@ fn residual(case: &Case, motion: Motion, g: &[f64], q: &[Vector], creepage: Vect
     let scale = match motion {
         Motion::Shift => rms(&rigid).max(rms(&displaced)),
         Motion::SteadyRolling if has_forces => rms(&rigid).max(rms(&displaced)),
-        // Rolling slowly: what round-off of the displacements leaves.
+        // In slow rolling the scale is the round-off of the displacements.
         _ => rms(&rigid).max(f64::EPSILON.sqrt() * rms(&displaced)),
     };
     let part = |value: f64| if value == 0.0 { 0.0 } else { value / scale };
     (part(rms(&left)), part(ROUND_OFF * largest))
 }
 
-/// What does not hold of the bounds and the forces, in words.
+/// The first bound or force that does not hold, in words.
 fn broken(case: &Case, g: &[f64], q: &[Vector]) -> Option<String> {
     if let Some(i) = (0..q.len()).find(|&i| !(length(q[i]) <= g[i])) {
         return Some(format!("element {i}: {:?} beyond {}", q[i], g[i]));

@@ -1,4 +1,4 @@
-//! The hard cases of friction, for docs/reliability_friction.md as well, and what is promised of them.
+//! The hard cases of friction, also for docs/reliability_friction.md, and their promised results.
 
 pub mod cases;
 pub mod certificate;

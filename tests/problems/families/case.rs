@@ -1,4 +1,4 @@
-//! One hard case: a scene that owns its arrays, and the shapes that the families share.
+//! A hard case: a scene that owns its arrays. Also the shapes that the families share.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, Table};
@@ -7,13 +7,13 @@ use contact_normal::scene::{Bodies, Load, Scene};
 /// A contact problem and its name.
 #[derive(Clone)]
 pub struct Case {
-    /// What is hard about it.
+    /// The name says why the case is hard.
     pub name: String,
     /// The potential contact area.
     pub grid: Grid,
     /// The undeformed distance.
     pub h: Vec<f64>,
-    /// Elasticity.
+    /// The elastic constants.
     pub bodies: Bodies,
     /// Prescribed approach or force.
     pub load: Load,
@@ -28,12 +28,12 @@ impl std::fmt::Debug for Case {
 }
 
 impl Case {
-    /// A case on a rigid body and one with E* = 1.
+    /// A case of a rigid body and one with E* = 1.
     pub fn new(name: &str, grid: Grid, h: Vec<f64>, load: Load) -> Case {
         Case { name: name.into(), grid, h, bodies: rigid_on(1.0), load, influence: None }
     }
 
-    /// As the library takes it.
+    /// The scene for the library.
     pub fn scene(&self) -> Scene<'_> {
         Scene { influence: self.influence.clone(), ..Scene::new(self.grid, &self.h, self.bodies, self.load) }
     }
@@ -44,18 +44,18 @@ pub fn rigid_on(modulus: f64) -> Bodies {
     Bodies { shear_modulus: [0.5 * modulus, f64::INFINITY], poisson_ratio: [0.0, 0.0] }
 }
 
-/// A grid.
+/// A grid that must be valid.
 pub fn grid(mx: usize, my: usize, dx: f64, dy: f64) -> Grid {
     Grid::new(mx, my, dx, dy).expect("a grid")
 }
 
-/// Position of element i's centre from the middle of the grid.
+/// The position of the centre of element i, relative to the middle of the grid.
 pub fn centre(grid: &Grid, i: usize) -> (f64, f64) {
     let from_middle = |i: usize, m: usize, d: f64| (i as f64 + 0.5 - 0.5 * m as f64) * d;
     (from_middle(i % grid.mx, grid.mx, grid.dx), from_middle(i / grid.mx, grid.my, grid.dy))
 }
 
-/// A distance given by a function of the position.
+/// The distances by a function of the position.
 pub fn distance(grid: &Grid, h: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     (0..grid.len()).map(|i| centre(grid, i)).map(|(x, y)| h(x, y)).collect()
 }
@@ -74,7 +74,7 @@ pub fn table(grid: &Grid, change: impl Fn(i64, i64, f64) -> f64) -> Table {
     Table::new(grid.mx, grid.my, &values, grid).expect("a table")
 }
 
-/// Numbers between 0 and 1, the same at every run.
+/// Pseudo-random numbers between 0 and 1 from a fixed seed.
 pub struct Random(pub u64);
 
 impl Random {

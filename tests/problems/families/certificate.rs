@@ -1,4 +1,4 @@
-//! The certificate, recomputed from the returned arrays with a product of our own.
+//! The certificate, recomputed from the returned arrays with the test's own product.
 
 use contact_normal::contact::State;
 use contact_normal::error::Result;
@@ -11,10 +11,10 @@ use contact_normal::threads::Threads;
 use super::case::Case;
 use crate::dense;
 
-/// Grids up to this size are summed directly, larger ones go by an FFT in double precision (tests/problems/operator.rs compares both).
+/// Grids up to this size are summed directly, larger ones by an FFT in double precision (tests/problems/operator.rs compares both).
 const SUMMED: usize = 1600;
 
-/// What a solve returned.
+/// The result of a solve.
 pub struct Found {
     pub stop: Outcome,
     pub report: Report,
@@ -29,7 +29,7 @@ impl Found {
     }
 }
 
-/// The conditions, recomputed.
+/// The recomputed measures.
 #[derive(Clone, Copy, Debug)]
 pub struct Recomputed {
     /// `||h - approach + A p|| / ||h - approach||` over C.
@@ -39,9 +39,9 @@ pub struct Recomputed {
     /// `sum of p |e| / sum of p |u|`.
     pub complementarity: f64,
     #[allow(dead_code)] // for tests/problems/properties.rs
-    /// The energy `(p, A p)/2 + (p, h - approach)`; with a prescribed force the approach is no part of it.
+    /// The energy `(p, A p)/2 + (p, h - approach)`; with a prescribed force without the approach.
     pub energy: f64,
-    /// What rounding may do to the first two.
+    /// The possible round-off of the first two measures.
     pub round_off: f64,
 }
 
@@ -56,7 +56,7 @@ pub fn run_with(case: &Case, options: &Options) -> Result<Found> {
     Ok(found(&solver, stop, report))
 }
 
-/// What a solver holds.
+/// The result that a solver holds.
 pub fn found(solver: &Solver, stop: Outcome, report: Report) -> Found {
     Found::of(stop, report, solver.state())
 }
@@ -74,7 +74,7 @@ pub fn displace(case: &Case, p: &[f64]) -> Vec<f64> {
     u
 }
 
-/// Recomputes the conditions.
+/// Recomputes the measures.
 pub fn recompute(case: &Case, found: &Found) -> Recomputed {
     let u = displace(case, &found.p);
     let (mut r2, mut h2, mut outside, mut gaps, mut work, mut count) = (0.0, 0.0, 0.0f64, 0.0, 0.0, 0.0f64);
@@ -103,12 +103,12 @@ pub fn recompute(case: &Case, found: &Found) -> Recomputed {
         violation: part(outside, scale),
         complementarity: part(gaps, work),
         energy,
-        // A product is good to some units of round-off of its largest value, and so is the difference h - approach.
+        // A product has an error of some units of round-off of its largest value, and so has the difference h - approach.
         round_off: part(64.0 * f64::EPSILON * (largest + found.approach.abs()), scale),
     }
 }
 
-/// What holds whatever the status: numbers, no tension, the prescribed force, and a report that tells what was found.
+/// Asserts the promises for any status: finite values, no tension, the prescribed force, and a report that agrees with the arrays.
 pub fn assert_sound(case: &Case, what: &str, found: &Found) -> Recomputed {
     let name = format!("{}, {what}, {:?}", case.name, found.stop);
     assert!(found.p.iter().all(|p| p.is_finite() && *p >= 0.0), "{name}: pressures");
@@ -134,7 +134,7 @@ pub fn assert_sound(case: &Case, what: &str, found: &Found) -> Recomputed {
     measures
 }
 
-/// What status OK promises: residual, violation and complementarity are at most `tolerance`.
+/// Asserts the promise of status OK: residual, violation and complementarity are at most `tolerance`.
 pub fn assert_certified(case: &Case, what: &str, found: &Found, tolerance: f64) -> Recomputed {
     assert_eq!(found.stop, Outcome::Converged, "{}, {what}: {:?}", case.name, found.report);
     let measures = assert_sound(case, what, found);
@@ -144,7 +144,7 @@ pub fn assert_certified(case: &Case, what: &str, found: &Found, tolerance: f64) 
     measures
 }
 
-/// Every case by every method: AUTO solves it; the others solve it or say that they did not.
+/// Solves every case by every method: AUTO must solve it, and the others must solve it or have another status.
 pub fn assert_solved_or_told(cases: &[Case]) {
     for case in cases {
         for method in [Method::Auto, Method::FullMultigrid, Method::Multigrid, Method::Norm] {

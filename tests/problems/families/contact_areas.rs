@@ -1,4 +1,4 @@
-//! Contact areas of every size and place: one element, two far apart, a row, the whole grid, none, at the edge, beside a hole.
+//! Contact areas of any size and place: one element, two far apart, a row, the whole grid, none, at the edge, beside a hole.
 
 use contact_normal::scene::Load;
 

@@ -1,7 +1,7 @@
-//! Scenes on which steps 4.1 and 4.2 go round in circles.
+//! Scenes on which the exchange of elements by steps (4.1) and (4.2) cycles.
 //!
-//! On three elements in a row of which each lifts its neighbour, solving on C and then exchanging all that violate the conditions (4.1,
-//! u = A p of the truncated p, 4.2) comes back to where it was. A is positive definite all the same, so there is one solution.
+//! On three elements in a row, each of which lifts its neighbour, solving on C and exchanging all elements that violate the conditions ((4.1), u = A
+//! p of the truncated p, (4.2)) returns to an earlier contact area. A is positive definite, so that the solution is unique.
 
 use contact_normal::scene::Load;
 
@@ -19,7 +19,7 @@ const ROWS: &[Row] = &[
     (&[1.0, -0.52, 0.98], &[0.66, -0.82, 0.87]),
 ];
 
-/// Each row by itself, and as many times as make `copies` of it, too far apart to see each other.
+/// Each row by itself, and `copies` of it, too far apart to interact.
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for (coefficients, depths) in ROWS {
@@ -130,7 +130,7 @@ mod promises {
         assert!(solved > 50 && refused > 5, "{solved} and {refused}");
     }
 
-    /// Whether the Operator matrix of 1 and these is positive definite: Cholesky's pivots are positive.
+    /// Whether the matrix with diagonal 1 and these coefficients is positive definite: the pivots of Cholesky's method are positive.
     fn is_definite(coefficients: &[f64]) -> bool {
         let m = coefficients.len() + 1;
         let at = |i: usize, k: usize| if i == k { 1.0 } else { coefficients[i.abs_diff(k) - 1] };

@@ -19,10 +19,10 @@ pub fn cases() -> Vec<Case> {
     ];
     for (name, mx, my, dx, dy) in shapes {
         let grid = grid(mx, my, dx, dy);
-        // An ellipsoid of height 1 at the middle of the sides; the approach presses a third of that in.
+        // An ellipsoid with the height 1 at the middle of the sides; the approach is a third of it.
         let (a, b) = (0.5 * mx as f64 * dx, 0.5 * my as f64 * dy);
         let h = distance(&grid, |x, y| (x / a).powi(2) + (y / b).powi(2));
-        // The force of about the same contact: E* sqrt(area) * depth.
+        // A force with about the same contact: E* sqrt(area) * depth.
         let force = 0.3 * (a * b).sqrt() * 0.3;
         for load in [Load::Approach(0.3), Load::Force(force)] {
             cases.push(Case::new(name, grid, h.clone(), load));

@@ -49,7 +49,7 @@ mod promises {
     const METHODS: [Method; 5] =
         [Method::Auto, Method::FullMultigrid, Method::Multigrid, Method::Norm, Method::ProjectedCg];
 
-    /// Solves from a guess by every method; the pressures are those of a solve from nothing.
+    /// Solves from a guess by every method: the pressures are those of a solve without a guess.
     fn no_guess_changes_the_answer(case: &Case, guesses: &[(&str, Vec<f64>, Vec<bool>)]) {
         for method in METHODS {
             let options = Options { method, tolerance: 1e-9, max_cycles: 5000, ..Options::default() };
@@ -64,7 +64,7 @@ mod promises {
                 // Also if no iteration was needed.
                 assert_certified(case, &format!("{method:?} from {name}"), &found, options.tolerance);
                 for (p, q) in found.p.iter().zip(&cold.p) {
-                    // Both residuals are at most 1e-9; the condition of A on this grid is below 100.
+                    // Both residuals are at most 1e-9; the condition number of A on this grid is below 100.
                     assert!((p - q).abs() <= 1e-7 * largest, "{method:?} from {name}: {p} and {q}");
                 }
             }
@@ -111,7 +111,7 @@ mod promises {
                         found(&solver, stop, report)
                     };
                     let again = from(&exact.p);
-                    // UPDATE at 1e-8 leaves a residual of at most about that: A is well scaled on the solution.
+                    // With UPDATE at 1e-8 the residual is at most about 1e-8: A is well scaled on the solution.
                     assert_certified(&case, &format!("{method:?} from the solution"), &again, 1e-7);
                     // Multigrid needs a V-cycle or two to measure the update; conjugate gradients measure the residual first.
                     assert!(again.report.count.cycles <= 4, "{method:?}: {} cycles", again.report.count.cycles);

@@ -1,4 +1,4 @@
-//! Elastic constants at their limits. Only 1/E* = sum of (1 - nu)/(2 G) matters: that is what the results are held against.
+//! Elastic constants at their limits. Results depend on 1/E* = sum of (1 - nu)/(2 G) only.
 
 use contact_normal::scene::{Bodies, Load};
 
@@ -59,7 +59,7 @@ mod promises {
             });
             let largest = expected.p.iter().copied().fold(0.0, f64::max);
             for (p, q) in found.p.iter().zip(&expected.p) {
-                // Two residuals of 1e-10, times the condition of A on this grid (below 100).
+                // Two residuals of 1e-10, times the condition number of A on this grid (below 100).
                 assert!((p / modulus - q).abs() <= 1e-8 * largest, "{}: {p} and {q}", case.name);
             }
         }

@@ -29,8 +29,8 @@ mod promises {
                     let found = run_with(&case, &options).expect("a solve");
                     let what = format!("{method:?} {criterion:?}");
                     let measures = assert_sound(&case, &what, &found);
-                    // The round-off of one product is about 1e-15 u, and that of p is up to a hundred times larger, by the
-                    // condition of A. A few hundred products add theirs.
+                    // The round-off of one product is about 1e-15 u. That of p is larger by up to the condition number of A, about a hundred. A few
+                    // hundred products add theirs.
                     assert!(measures.residual <= 1e-12, "{what}: {measures:?}");
                     let floor_or_exact = found.stop == Outcome::Stagnated
                         || criterion == Criterion::Update && found.stop == Outcome::Converged;
@@ -42,7 +42,7 @@ mod promises {
 
     #[test]
     fn norm_below_round_off_ends_with_the_contact_area_found() {
-        // Also periodic scenes, whose directions lose their mean of 0 by round-off, and tables that are not symmetric.
+        // Also periodic scenes, whose directions have a mean by round-off, and tables that are not symmetric.
         let shaped = [super::super::surfaces::cases(), super::super::coefficients::cases()].concat();
         let shaped =
             shaped.into_iter().chain(super::super::contact_areas::cases()).filter(|case| case.grid.len() < 4000);
@@ -52,7 +52,7 @@ mod promises {
             let options = Options { method: Method::Norm, tolerance: 1e-30, max_cycles: 20_000, ..Options::default() };
             let found = run_with(&case, &options).expect("a solve");
             let measures = assert_sound(&case, "NORM below round-off", &found);
-            // Contact areas of few elements are solved to the last bit: these converge.
+            // Contact areas of few elements are solved to the last bit, and converge.
             assert!(
                 [Outcome::Stagnated, Outcome::Converged].contains(&found.stop),
                 "{}: {:?}",
@@ -78,9 +78,8 @@ mod promises {
                 let energy = recompute(&case, &found).energy;
                 // The round-off of the energy, a sum of thousands of terms of similar size, is about 1e-14.
                 if energy - last > 1e-12 * energy.abs() {
-                    // By approach the largest increase measured is 1e-6: a truncation may cost more energy than its line search gains; the next
-                    // step regains it. By force p is scaled after each truncation: 3.5e-3 in an early iteration on the needle. With another
-                    // preconditioner that changes by half.
+                    // By approach a truncation may cost more energy than its line search gains, up to 1e-6; the next step regains it. By force p is
+                    // scaled after each truncation: up to 3.5e-3 in an early iteration on the needle. The latter depends on the preconditioner.
                     let is_force = matches!(case.load, Load::Force(_));
                     risen.push((case.name.clone(), is_force));
                     let most = if is_force { 4e-3 } else { 1e-5 };
@@ -93,7 +92,7 @@ mod promises {
             }
             count += 1;
         }
-        // Measured: by approach one increase, of 1e-6 of the energy; by force three, all on the needle.
+        // By approach there is one increase, of 1e-6 of the energy; by force there are three, all on the needle.
         let (by_force, by_approach): (Vec<_>, Vec<_>) = risen.into_iter().partition(|(_, is_force)| *is_force);
         assert!(count > 50 && by_approach.len() <= 2, "of {count}: {by_approach:?}");
         let is_needle = |name: &str| name.contains("needle");

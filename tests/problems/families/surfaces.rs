@@ -1,4 +1,4 @@
-//! Surfaces that coarse grids, preconditioners or rounding see badly.
+//! Surfaces that are hard for coarse grids, preconditioners or rounding.
 
 use contact_normal::scene::Load;
 
@@ -13,7 +13,7 @@ pub fn cases() -> Vec<Case> {
     let checked = |i: usize| (i % 64 + i / 64) % 2 == 1;
 
     let board: Vec<f64> = (0..square.len()).map(|i| if checked(i) { 0.3 } else { 0.0 }).collect();
-    // The first touches the deep elements only, the second all.
+    // With the first load only the deep elements touch, with the second all.
     add("checkerboard", square, board.clone(), &[Load::Approach(0.1), Load::Approach(2.0), Load::Force(0.5)]);
     let hollow: Vec<f64> =
         paraboloid(&square, 0.05).iter().zip(&board).map(|(h, step)| h + 1e-3 * step / 0.3).collect();
@@ -28,7 +28,7 @@ pub fn cases() -> Vec<Case> {
     let extreme: Vec<f64> = noise.iter().map(|r| 10f64.powf(400.0 * r - 200.0)).collect();
     add("noise over 400 decades", square, extreme, &[Load::Approach(1e-6), Load::Approach(1e100), Load::Force(1e-3)]);
 
-    // 100 x 100 bumps of 4 x 4 elements, of heights that differ.
+    // 100 x 100 bumps of 4 x 4 elements, with different heights.
     let islands = grid(400, 400, 0.01, 0.01);
     let heights: Vec<f64> = (0..10_000).map(|_| 1e-3 * random.next()).collect();
     let h = (0..islands.len())
@@ -40,7 +40,7 @@ pub fn cases() -> Vec<Case> {
         .collect();
     add("10^4 islands", islands, h, &[Load::Approach(0.4)]);
 
-    // Single elements 16 apart in a plain: means over 2 x 2 lose 3/4 of their depth on each grid.
+    // Single elements 16 apart in a plane: means over 2 x 2 lose 3/4 of their depth on each grid.
     let wide = grid(130, 120, 0.1, 0.1);
     let h = (0..wide.len()).map(|i| if (i % 130) % 16 == 7 && (i / 130) % 16 == 9 { 0.0 } else { 1.0 }).collect();
     add("islands that no coarse grid sees", wide, h, &[Load::Approach(0.2), Load::Force(0.2), Load::Approach(1.5)]);
