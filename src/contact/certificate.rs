@@ -4,6 +4,7 @@ use super::survey_pass::Pass;
 pub use super::survey_pass::Survey;
 use super::{AdmissibleSet, State};
 use crate::blocks;
+use crate::scene::Load;
 use crate::threads::Threads;
 
 /// The measures of a solution. Status OK means that they are within the tolerance.
@@ -67,7 +68,7 @@ impl Survey {
         (self.residual, self.distance) = (self.residual.sqrt(), self.distance.sqrt());
         let offset = ROUND_OFF * state.approach.abs();
         let noise = offset * (self.contact_count as f64).sqrt() + state.round_off * self.squares.sqrt();
-        if noise.is_finite() && self.distance <= noise && self.residual <= noise {
+        if noise.is_finite() && self.distance <= noise && self.residual <= noise && !self.is_hidden(state) {
             self.residual = 0.0;
             let largest = offset + state.round_off * self.range.1;
             if self.violation <= largest {
@@ -75,6 +76,17 @@ impl Survey {
             }
             self.work.0 = 0.0;
         }
+    }
+
+    /// By force: whether the round-off of distances hides displacements that pressures cause. Nothing is then known of these pressures, unless they are
+    /// at their limit.
+    fn is_hidden(&self, state: &State) -> bool {
+        if !matches!(state.load, Load::Force(_)) || state.has_limited() {
+            return false;
+        }
+        let in_contact = (0..state.p.len()).filter(|&i| state.contact[i]);
+        let displaced = in_contact.map(|i| state.u[i].powi(2)).sum::<f64>().sqrt();
+        displaced > state.round_off * self.squares.sqrt()
     }
 
     /// Adds the elements at their limit, whose e must not be positive. Returns their sum of `(h - approach)^2`.

@@ -28,8 +28,10 @@ pub struct Problem {
     pub symmetric: bool,
     /// Whether the coefficients are the caller's, which need not be those of an elastic body.
     pub given: bool,
-    /// Whether the surface of the last solve ends and jumps between elements only, for estimates.
+    /// Whether the surface of the last solve ends between elements only, for estimates.
     pub exact_edges: bool,
+    /// Whether it has no jumps, for estimates.
+    pub exact_jumps: bool,
     /// Work units of one product.
     pub work: f64,
     /// The threads of the solve.
@@ -71,6 +73,7 @@ impl Problem {
             symmetric,
             given: false,
             exact_edges: false,
+            exact_jumps: false,
             work,
             threads,
             operators,

@@ -5,6 +5,13 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
 
+/// A step between two centres has this many times both slopes on one side, and at least 1/STEADY of the slope on its other side. On a parabola the slope
+/// beyond one that is four times another is at least 7/4 of it.
+const STEEPER: f64 = 4.0;
+const STEADY: f64 = 1.5;
+/// Cubics between monotone heights are monotone if slopes are at most this many times the smaller secant (Fritsch & Carlson 1980).
+const MONOTONE: f64 = 3.0;
+
 /// A surface is rough at its end if the third difference there exceeds this part of the steps: a wave of 12 elements.
 const ROUGH: f64 = 0.25;
 
@@ -99,9 +106,12 @@ impl Part {
     fn smoothed(&self, nodes: [f64; 4], beyond: [f64; 2]) -> f64 {
         let fourth = |outer: f64, [a, b, c, d]: [f64; 4]| outer - 4.0 * a + 6.0 * b - 4.0 * c + d;
         let [n0, n1, n2, n3] = nodes;
-        let changes = [fourth(beyond[0], nodes), fourth(beyond[1], [n3, n2, n1, n0])];
-        // Beside a hole or the border there are four centres.
-        let [before, behind] = changes.map(|change| if change.is_finite() { change / 12.0 } else { 0.0 });
+        let change = |outer: f64, nodes: [f64; 4]| {
+            // Beside a hole or the border there are four centres.
+            let smoothed = Some(fourth(outer, nodes) / 12.0).filter(|change| change.is_finite()).unwrap_or(0.0);
+            smoothed + without_lip(outer, nodes, smoothed)
+        };
+        let (before, behind) = (change(beyond[0], nodes), change(beyond[1], [n3, n2, n1, n0]));
         let s = if self.offset < 0.0 { 1.0 + self.offset } else { self.offset };
         s * (1.0 - s) * ((1.0 - s) * before + s * behind)
     }
@@ -127,6 +137,25 @@ impl Part {
             here
         }
     }
+}
+
+/// The change of the slope at the second of four centres, beside a step, to one without a lip: a surface that rises above the centres beside a step would
+/// carry the load there. `outer`: the centre before the four; `smoothed`: the change of the slope before.
+fn without_lip(outer: f64, [n0, n1, n2, n3]: [f64; 4], smoothed: f64) -> f64 {
+    let [before, behind] = [n1 - n0, n2 - n1];
+    let (beyond, less, step, next) = match before.abs() < behind.abs() {
+        true => (n0 - outer, before, behind, n3 - n2),
+        false => (n3 - n2, behind, before, n0 - outer),
+    };
+    // The outermost slope is not known beside a hole or the border: it is infinite.
+    let is_level = STEEPER * less.abs().max(beyond.abs()) < step.abs();
+    if !is_level || !next.is_finite() || next * step.signum() > STEADY * step.abs() {
+        return 0.0;
+    }
+    let slope = (6.0 * n2 - 3.0 * n1 - 2.0 * n0 - n3) / 6.0 + smoothed;
+    let most = if less * step > 0.0 { MONOTONE * less } else { 0.0 };
+    let limited = if slope * step > 0.0 { slope.signum() * slope.abs().min(most.abs()) } else { 0.0 };
+    limited - slope
 }
 
 /// The first of the four nearest centres, relative to the element of the point.

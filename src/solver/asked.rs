@@ -16,14 +16,16 @@ pub(crate) struct Asked<'a> {
     pub options: &'a Options,
     /// The caller's pressures and contact area.
     pub guess: Option<Guess<'a>>,
-    /// For estimates: whether all edges and jumps of the surface are at edges of elements.
+    /// For estimates: whether all edges of the surface are at edges of elements.
     pub exact_edges: bool,
+    /// For estimates: whether it has no jumps.
+    pub exact_jumps: bool,
 }
 
 impl<'a> Asked<'a> {
     /// A solve without a guess, of a surface that may end anywhere.
     pub fn new((scene, lowest): (&'a Scene<'a>, f64), options: &'a Options) -> Asked<'a> {
-        Asked { scene, lowest, options, guess: None, exact_edges: false }
+        Asked { scene, lowest, options, guess: None, exact_edges: false, exact_jumps: false }
     }
 
     /// The guess, if it gives the contact area.

@@ -123,7 +123,7 @@ impl Parts {
         let (ends, highest) = ends(problem, state, outline);
         let highest_at_ends = highest.max(curvature.highest_at_jumps);
         let ends = by * ends + one_element(problem, state) * found.abs();
-        let jumps = if problem.exact_edges { 0.0 } else { JUMPS_FACTOR * by * curvature.jumps / count as f64 };
+        let jumps = if problem.exact_jumps { 0.0 } else { JUMPS_FACTOR * by * curvature.jumps / count as f64 };
         let likely = sign * MEAN_ERROR * by * curvature.bend;
         let parts = Parts { smooth, short, ends, jumps, stiffness, by, highest_at_ends, likely };
         (parts.error().is_finite() && stiffness.is_finite()).then_some(parts)
@@ -225,6 +225,8 @@ pub fn estimate(
     // Before pressures carry a force, `carried` is infinite.
     let whole = finest.grid.len() as f64 * finest.grid.element_area();
     let area = |error: f64| error.is_finite().then_some(error.min(whole));
+    // A layer that gives way more than elements has pressures that fall linearly at the rim, where counting has no bias to correct.
+    let correction_off = if problem.coefficients.has_layer() { 1.0 } else { CORRECTION_OFF };
     let count = ledger.len();
     for (i, row) in ledger.iter_mut().enumerate() {
         let is_last = i + 1 == count;
@@ -242,7 +244,7 @@ pub fn estimate(
             force: force.map(|error| error + hidden(found)),
             max_pressure: highest.map(|error| error + hidden(measures.max_pressure)),
             contact_area: area(off + lines * size),
-            corrected_area: area(CORRECTION_OFF * correction + lines * size),
+            corrected_area: area(correction_off * correction + lines * size),
             pressure: pressure.map(|error| error * size + residual),
             untrusted,
         };

@@ -240,7 +240,7 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         self.set_up.check(asked.scene, asked.options, &self.problem)?;
-        self.problem.exact_edges = asked.exact_edges;
+        (self.problem.exact_edges, self.problem.exact_jumps) = (asked.exact_edges, asked.exact_jumps);
         let surface = effects::surface(asked.scene)?;
         let changed = surface.as_deref().map(|h| Scene { undeformed_distance: h, ..asked.scene.clone() });
         let asked = asked.on(changed.as_ref(), &self.problem.threads)?;

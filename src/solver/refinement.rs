@@ -219,8 +219,9 @@ fn solve_on(
         is_late = late(told);
         is_late || progress.as_mut().is_some_and(|progress| progress(told))
     };
-    // Without a callback the surface jumps between the given elements only.
-    let asked = Asked { exact_edges: surface.is_none() && doublings >= 0, ..Asked::new((scene, lowest), options) };
+    // Without a callback the surface ends between the given elements only, and finer grids have slopes of some elements where it jumps.
+    let [exact_edges, exact_jumps] = [0, 1].map(|least| surface.is_none() && doublings >= least);
+    let asked = Asked { exact_edges, exact_jumps, ..Asked::new((scene, lowest), options) };
     let (mut stop, report) = solver.solve_checked(asked, Some(&mut watch))?;
     let outlook = Outlook::of(&solver, &report, scene.load);
     let of = match stop {

@@ -611,3 +611,24 @@ fn time_steps_begin_with_what_the_last_ones_changed() {
         assert!(report.measures.certificate.residual <= 1e-6);
     }
 }
+
+/// A flat punch, displaced by less than the round-off of its distance: no pressures can be certified, and none are called a solution unless they are.
+#[test]
+fn displacements_below_the_round_off_of_distances_are_not_called_solved() {
+    let grid = Grid::new(24, 24, 1.0, 1.0).unwrap();
+    let solved = |offset: f64| {
+        let h = vec![offset; grid.len()];
+        let scene = Scene::new(grid, &h, rigid_on(1e5), Load::Force(2.4e-11));
+        let (solver, outcome, _) = solve(&scene, &Options::default()).unwrap();
+        (solver.state().p.clone(), outcome)
+    };
+    let (right, outcome) = solved(0.0);
+    assert_eq!(outcome, Outcome::Converged);
+    let largest = right.iter().copied().fold(0.0, f64::max);
+    for offset in [1.0, 1e3, 1e9] {
+        let (p, outcome) = solved(offset);
+        let off = p.iter().zip(&right).fold(0.0, |off: f64, (p, right)| off.max((p - right).abs()));
+        println!("offset {offset}: {outcome:?}, off by {:.1e}", off / largest);
+        assert!(outcome != Outcome::Converged || off <= 1e-2 * largest, "{offset}: {off}");
+    }
+}

@@ -66,7 +66,8 @@ type Solved = Option<(OnGrid, f64)>;
 
 /// The largest relative change of quantities other than pressures and areas; infinite if there are none.
 fn moved(wanted: &[Quantity], now: &[Value], before: &[Value]) -> f64 {
-    let is_smooth = |quantity: &Quantity| !quantity.is_local() && !quantity.is_area();
+    let is_smooth =
+        |quantity: &Quantity| !quantity.is_local() && !quantity.is_area() && *quantity != Quantity::Stiffness;
     let of = |(quantity, (now, before)): (&Quantity, (&Value, &Value))| match (*now, *before) {
         (Ok(now), Ok(before)) if is_smooth(quantity) && before != 0.0 => Some(((now - before) / before).abs()),
         _ => None,
@@ -205,10 +206,18 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             variant.moved = moved(&self.wanted, &variant.values, &as_it_is);
             for (q, quantity) in self.wanted.iter().enumerate() {
                 if let (Ok(value), Some(Ok(before))) = (variant.values[q], as_it_is.get(q)) {
-                    // On the scene's own grid the change of an area is exact.
-                    let by_elements = match quantity.is_area() && doublings < 0 {
-                        true => (JUMP * grid.element_area()).min(MOST_MOVED * variant.moved * before.abs()),
-                        false => 0.0,
+                    // Areas, and stiffnesses of the contact area, change by whole elements.
+                    let (jump, most) = (JUMP * grid.element_area(), MOST_MOVED * variant.moved * before.abs());
+                    let by_elements = match quantity {
+                        // On the scene's own grid changes are exact.
+                        _ if doublings >= 0 => 0.0,
+                        // Near full slip it changes by more than forces do, and finer grids may have some of an empty one.
+                        Quantity::StickArea => jump,
+                        Quantity::ContactArea => jump.min(most),
+                        Quantity::Stiffness => {
+                            most.min(before.abs() * found.values[q].map_or(0.0, |found| found.least))
+                        }
+                        _ => 0.0,
                     };
                     variant.changes[q].add(doublings, value - before, by_elements + found.residual * before.abs());
                 }

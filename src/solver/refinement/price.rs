@@ -92,10 +92,18 @@ pub(super) fn predict(
     let (least, most) = (-(last.across.ilog2() as i32), (MOST_ELEMENTS as f64).log2() as i32);
     let does = |k: &i32| {
         let enough = last.across as f64 * 2f64.powi(*k) >= quantity.enough_across() as f64;
-        enough && falling.after(*k) <= target && scaled(scene, last.doublings + k).is_ok()
+        enough && error_after(samples, falling, *k) <= target && scaled(scene, last.doublings + k).is_ok()
     };
     let k = (least..=most).find(does)?;
     Some((k, seconds(k)))
+}
+
+/// The relative error `k` doublings after the last sample. A coarser sample has at least its difference from the last one.
+fn error_after(samples: &[Sample], falling: Falling, k: i32) -> f64 {
+    let Some(last) = samples.last() else { return f64::INFINITY };
+    let coarser = samples.iter().find(|sample| k < 0 && sample.doublings == last.doublings + k);
+    let apart = coarser.and_then(|sample| Some(((sample.value()? - last.value()?) / last.value()?).abs()));
+    falling.after(k).max(apart.map_or(0.0, |apart| apart + falling.now()))
 }
 
 /// The cost of a tolerance on the grid after `doublings`: its seconds over those of a solve to the samples' tolerance, and its products. Both come
@@ -151,7 +159,8 @@ pub(super) fn price(
     let work_units = counted.iter().find(|one| one.is_of(&grid, tolerance)).map_or(work_units, |one| one.products);
     let seconds = seconds * part;
     let each = doubling(refines(scene));
-    let bytes = last.bytes * each.powi(k);
+    let sample = samples.iter().rfind(|sample| sample.doublings <= last.doublings + k).unwrap_or(&samples[0]);
+    let bytes = sample.bytes * each.powi((last.doublings + k - sample.doublings).max(0));
     // A search holds the solver of the grid before, of half the elements a side or less, unless it ends on its first grid.
     let before = if last.doublings + k > 0 { bytes / each } else { 0.0 };
     let most = if accuracy.max_elements == 0 { MOST_ELEMENTS } else { accuracy.max_elements };
@@ -164,7 +173,7 @@ pub(super) fn price(
     let obstacle = obstacles.into_iter().find(|(is_in_the_way, _)| *is_in_the_way).map(|(_, obstacle)| obstacle);
     Price {
         grid: Some(grid),
-        error: Some(if last.is_exact() { 0.0 } else { falling.after(k).max(tolerance) }),
+        error: Some(if last.is_exact() { 0.0 } else { error_after(samples, falling, k).max(tolerance) }),
         seconds: Some(seconds / speed_up),
         seconds_one_thread: Some(seconds),
         work_units,

@@ -207,8 +207,12 @@ impl Sample {
 
     /// Whether the quantity is exactly 0, as nothing touches on the grid of the scene or a finer one.
     pub(super) fn is_exact(&self) -> bool {
-        let is_zero = self.values.of.first().is_some_and(|value| value.is_ok_and(|found| found.value == 0.0));
-        self.across == 0 && self.doublings >= 0 && is_zero
+        self.across == 0 && self.doublings >= 0 && self.value() == Some(0.0)
+    }
+
+    /// The value of the quantity.
+    pub(super) fn value(&self) -> Option<f64> {
+        self.values.of.first().and_then(|value| value.ok().map(|found| found.value))
     }
 
     /// The relative error of the quantity, on this and finer grids.
