@@ -33,7 +33,7 @@ struct stresses {
     std::vector<double> von_mises, maximum_shear;
     std::array<std::vector<double>, 3> principal;  // the largest first
     std::array<std::vector<double>, 3> directions; // of them: unit vectors, three values for each place
-    // The largest shear stress belongs to maximum_shear, principal and none; otherwise it is not computed.
+    // The largest shear stress belongs to maximum_shear, principal, directions and none; otherwise it is not computed, and 0.
     contact_normal_stress_maximum largest_von_mises, largest_shear;
 
     stresses() { contact_normal_stress_maximum_init(&largest_von_mises), contact_normal_stress_maximum_init(&largest_shear); }
@@ -70,7 +70,7 @@ inline contact_normal_stress_outputs room_of(stresses &found, stress_fields aske
     }
     outputs.largest_von_mises = &found.largest_von_mises;
     // Principal stresses, which it needs, take longer than all the rest.
-    if (asked == stress_fields::none || asks(stress_fields::maximum_shear | stress_fields::principal)) outputs.largest_shear = &found.largest_shear;
+    if (asked == stress_fields::none || asks(stress_fields::maximum_shear | stress_fields::principal | stress_fields::directions)) outputs.largest_shear = &found.largest_shear;
     return outputs;
 }
 

@@ -31,8 +31,8 @@ def cut_decimals(lines: list[str]) -> str | None:
 
 
 def _are_halves(lines: list[str]) -> bool:
-    """Whether every second cell has equally many digits and no sign, and many of the others have a sign or other
-    lengths."""
+    """Whether every second cell has equally many digits and no sign, and many of the others, in at least half of their
+    columns, have a sign or other lengths. A column alone, as of a dead detector, has a reason of its own."""
     most = max((line.count(",") for line in lines), default=0)
     rows = [[cell.strip() for cell in line.split(",")] for line in lines if line.count(",") == most]
     first, second = ([cell for row in rows for cell in row[k::2]] for k in (0, 1))
@@ -40,7 +40,8 @@ def _are_halves(lines: list[str]) -> bool:
     if most % 2 == 0 or not are_digits or not all(re.fullmatch(r"[-+]?\d+", cell) for cell in first):
         return False
     lengths = {len(cell) for cell in second}
-    return len(lengths) == 1 and sum(not cell.isdigit() or len(cell) not in lengths for cell in first) >= _MANY
+    others = [k for row in rows for k in range(0, most, 2) if not row[k].isdigit() or len(row[k]) not in lengths]
+    return len(lengths) == 1 and len(others) >= _MANY and 4 * len(set(others)) > most
 
 
 def _are_pairs(lines: list[str]) -> bool:

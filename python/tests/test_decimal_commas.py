@@ -62,6 +62,24 @@ class DecimalCommas(unittest.TestCase):
             self.assertEqual(self.read(text.replace(",", ".0,", 1)).z.shape, (40, 40))
             np.testing.assert_allclose(self.read(text_of(HEIGHTS, 1, ";")).z, HEIGHTS, atol=0.051)
 
+    def test_integers_with_one_odd_column_are_read(self):
+        counts = np.random.default_rng(3).integers(20000, 40000, (48, 64))
+        zeros = np.zeros((48, 64), dtype=int)
+        for name, values, odd in (("a dead column", counts, 0), ("a rib", zeros, 10), ("a scratch", zeros, -1)):
+            for column in (20, 21):
+                with self.subTest(name, column=column):
+                    values = values.copy()
+                    values[10:30, column] = odd
+                    np.testing.assert_array_equal(self.read("\n".join(",".join(map(str, row)) for row in values)).z, values)
+
+    def test_counts_beside_points_of_profiles_are_no_decimals(self):
+        y = np.linspace(-35.0, 35.0, 60)
+        for begin, end in (("{:04d},", ",1"), ("", ",2024,05,17"), ("", ",00,07,17"), ("", ",007,1")):
+            with self.subTest(begin=begin, end=end):
+                self.path.write_text("".join(f"{begin.format(k)}{one:.3f},{-one**2 / 600:.4f}{end}\n" for k, one in enumerate(y)))
+                found = profiles.read(self.path, kind="wheel", columns=(1, 2) if begin else (0, 1))
+                np.testing.assert_allclose(found.y, y, atol=6e-4)
+
     def test_profiles_are_refused(self):
         y = np.linspace(-36.0, 36.0, 145)
         points = np.stack([y, 300.0 - np.sqrt(300.0**2 - y**2)], axis=1)

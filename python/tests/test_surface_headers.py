@@ -91,10 +91,29 @@ class Headers(unittest.TestCase):
                               ("# Y\tX\tZ\tI", (Y, X, Z, light)), ("# x y intensity z", (X, Y, light, Z)), ("# index y x z", (np.arange(63.0), Y, X, Z))):
             with self.subTest(head):
                 self.assert_grid(self.read(head, columns))
+        warnings.simplefilter("ignore")
+        for end in ENDS:
+            for columns in ((Y, X, Z, light), (np.arange(63.0), Y, X, Z)):
+                self.assert_grid(self.read("# y x z", columns, end))
+                self.assert_grid(self.read("# y x z of a stage\n# y x z", columns, end))
+        warnings.simplefilter("error")
         # These are no names of columns.
         for head in ("# y and x of the stage, z of the sensor", "# lines along y, steps along x, heights", "# 20 x 30"):
             with self.subTest(head):
                 self.assert_grid(self.read(head, (X, Y, Z)))
+
+    def test_values_are_of_no_column(self):
+        self.silent()
+        for head in ("# Size x (mm): 7\n# Size y (mm): 10\n# Resolution z (nm): 0.1", "# Step y [mm]: 2\n# Step x [mm] = 1\n# Step z [mm]: .001",
+                     "# stage x/mm: 10\n# stage y/mm: -5\n# stage z/mm: 0"):
+            for more in ("", "\n# x y z"):
+                with self.subTest(head + more):
+                    self.assert_grid(self.read(head + more, (X, Y, Z)))
+                    self.assert_grid(self.read(head + more, (X, Y, Z), units=("um", "N")), "um")
+
+    def test_of_two_columns_of_heights_the_first_one_counts(self):
+        with self.assertWarnsRegex(UserWarning, "number 3 as the heights"):
+            self.assert_grid(self.read("# x [mm] y [mm] z [mm] height [um]", (X, Y, Z, np.cos(7.0 * X * Y))), "mm")
 
     def test_a_map_has_no_columns_of_points(self):
         path = self.folder / "map.txt"
@@ -114,6 +133,13 @@ class Headers(unittest.TestCase):
         self.silent()
         for head in ("# x y z", "# objective 50x, distance 3 mm, slope 2 um/s", "# Sample no. 7 of m and s", "# x [mm] y [mm] z [mm]\n# heights in mm"):
             self.read(head, (X, Y, Z))
+        # Units of other quantities and of values; folders; names.
+        for head in ("Feed rate mm/min: 5", "Speed [mm/s]: 2", "gain nm/V: 3", "File: C:/data/mm/a.txt", "Stylus tip radius [um]: 2", "Filter cutoff [mm] 0.8",
+                     "wavelength (nm): 633", "z-range, um: 10", "dx [mm] = 0.5", "Created by Meter X", "Micron Inc."):
+            with self.subTest(head):
+                self.assert_grid(self.read(f"# {head}", (X, Y, Z)))
+        # The caller names the unit.
+        self.assert_grid(self.read("# units: um", (X, Y, Z), units=("um", "N")), "um")
 
 
 if __name__ == "__main__":

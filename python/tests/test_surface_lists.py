@@ -6,6 +6,7 @@ import unittest
 import warnings
 from pathlib import Path
 from types import SimpleNamespace
+from unittest import mock
 
 import numpy as np
 
@@ -120,6 +121,24 @@ class Lists(unittest.TestCase):
         with instruments(lambda **_: points):
             with self.assertRaisesRegex(ValueError, "a.asc has x, y and z of 40 points"):
                 surface.read(self.path.with_name("a.asc"), dx=0.5, dy=0.25)
+
+    def test_maps_of_other_packages_are_parsed_by_them_alone(self):
+        z = self.random.normal(size=(12, 9))
+        topography = SimpleNamespace(dim=2, is_uniform=True, is_periodic=False, unit=None, physical_sizes=(1.0, 1.0), heights=lambda: z.T)
+        text = "\n".join("\t".join(f"{one:.17g}" for one in row) for row in z)
+        # Several tabs between some numbers; and a column of holes.
+        uneven, empty = text.replace("\t", "\t\t", 1), "\n".join(line.replace("\t", "\t\t", 1) for line in text.split("\n"))
+        for end in (".tsv", ".asc", ".xyz"):
+            path = self.path.with_suffix(end)
+            for rows, told in ((text, []), (uneven, ["some numbers are parted by several tabs"]), (empty, ["column 1, counted from 0, has no number"])):
+                path.write_text("# a map\n" + rows)
+                with self.subTest(end, told=told), instruments(lambda **_: topography), warnings.catch_warnings(record=True) as caught, \
+                     mock.patch("contact_normal.surface._lists.of_text", side_effect=AssertionError("it is parsed")):
+                    warnings.simplefilter("always")
+                    found = surface.read(path, dx=50.0, dy=50.0)
+                    np.testing.assert_array_equal(found.z, np.insert(z, 1, np.nan, axis=1) if rows is empty else z)
+                    self.assertEqual([str(one.message)[: len(told[0])] if told else str(one.message) for one in caught], told)
+                    self.assertEqual({one.filename for one in caught}, {__file__} if told else set())
 
     def test_a_narrow_map_is_told(self):
         with self.assertWarnsRegex(UserWarning, "is read as a map of 60 x 3 heights"):

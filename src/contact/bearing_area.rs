@@ -8,7 +8,7 @@ use crate::scene::Load;
 use crate::threads::Threads;
 
 /// Most elements whose state depends on displacements, relative to those at their limit. With more, a start from coarser grids is better.
-const UNDECIDED_SHARE: f64 = 0.1;
+pub const UNDECIDED_SHARE: f64 = 0.1;
 /// Accuracy of the depth, relative to the largest displacement.
 const DEPTH_ACCURACY: f64 = 0.25;
 /// Most halvings of a bracket of the depth: the bits of a double.
@@ -23,11 +23,11 @@ struct Below {
 }
 
 impl State {
-    /// Starts on the bearing area, if few elements depend on displacements. Returns the bound on displacements there.
+    /// Starts on the bearing area, if at most this share of elements depend on displacements. Returns the bound on displacements there.
     pub fn start_on_bearing_area<S: AdmissibleSet>(
         &mut self,
         set: S,
-        self_influence: f64,
+        (self_influence, undecided_share): (f64, f64),
         threads: &Threads,
     ) -> Option<f64> {
         if !S::LIMITED {
@@ -41,7 +41,7 @@ impl State {
         let reach = self.deepest(&held, self_influence);
         let undecided = self.h.iter().filter(|&h| low - reach <= *h && *h <= high + reach).count();
         // The count is 0 if the approach is less than all distances.
-        if held.count == 0 || !(undecided as f64 <= UNDECIDED_SHARE * held.count as f64) {
+        if held.count == 0 || !(undecided as f64 <= undecided_share * held.count as f64) {
             return None;
         }
         self.u.fill(0.0);

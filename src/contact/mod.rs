@@ -17,6 +17,7 @@ mod values;
 
 pub use admissible::{AdmissibleSet, Fixed, NonNegative};
 pub(crate) use balance::CANCELLED;
+pub use bearing_area::UNDECIDED_SHARE;
 pub use certificate::{largest, norm_of_distance, relative, residual_norm, Certificate, Survey, ROUND_OFF};
 pub use exchange::{admit, all_stay, enter, leave, truncate};
 pub use guard::ExchangeGuard;

@@ -14,6 +14,11 @@ use crate::scene::Plain;
 /// Why refinement to an accuracy is refused.
 const ONE_GRID: &str = "own coefficients are those of one grid, and an accuracy needs several";
 
+/// Whether a layer adds its compliance to the coefficients of elements on themselves.
+fn has_layer(others: &[Option<&dyn Effect>]) -> bool {
+    others.iter().flatten().any(|other| other.name() == "layer")
+}
+
 impl Effect for Table {
     fn name(&self) -> &'static str {
         "influence"
@@ -38,6 +43,13 @@ impl Effect for Table {
         if mx < grid.mx || my < grid.my {
             let Grid { mx: columns, my: rows, .. } = grid;
             return invalid(format!("influence is a table of {mx} x {my} elements; the grid has {columns} x {rows}"));
+        }
+        Ok(())
+    }
+
+    fn check_load(&self, _: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
+        if has_layer(others) {
+            return Ok(());
         }
         self.check_largest()
     }
@@ -83,6 +95,13 @@ impl Effect for RowTables {
         if (mx, my) != (grid.mx, grid.my) {
             let Grid { mx: columns, my: rows, .. } = grid;
             return invalid(format!("row_tables are those of {mx} x {my} elements; the grid has {columns} x {rows}"));
+        }
+        Ok(())
+    }
+
+    fn check_load(&self, _: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
+        if has_layer(others) {
+            return Ok(());
         }
         self.check_largest()
     }

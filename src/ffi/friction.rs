@@ -152,10 +152,10 @@ pub struct contact_normal_friction {
     /// bodies and `sensitivities` as with a `law`.
     pub hardening: f64,
     /// mu that particles of the interface had before the step, of a law with memory, `[my][mx]`; default NULL: that at rest, and with
-    /// `continues` what the handle found. Zeros alone, which a step without a law writes, are as NULL. In transient rolling a particle comes from its
+    /// `continues` what the handle found. Zeros alone, which a step without a law writes, count as NULL. In transient rolling a particle comes from its
     /// old place; steady rolling does not read it.
     pub previous_coefficient: *const f64,
-    /// And their yield limits; default NULL, and zeros alone: `yield_limit`.
+    /// Their yield limits; default NULL: `yield_limit`. Zeros alone count as NULL.
     pub previous_yield_limit: *const f64,
     /// Which solution, of a law or a layer that hardens or softens: CONTACT_NORMAL_FRICTION_BRANCH_...; default NEAR. Others take several times as many
     /// products, and creepages in both directions (UNSUPPORTED otherwise).

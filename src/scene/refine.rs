@@ -5,8 +5,9 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
 
-/// A step between two centres has this many times both slopes on one side, and at least 1/STEADY of the slope on its other side. On a parabola the slope
-/// beyond one that is four times another is at least 7/4 of it.
+/// A step between two centres has this many times both slopes on one side, and at least 1/STEADY of the slope on its other side. On a parabola successive
+/// slopes differ by equal amounts: the slope beyond one that is four times another is at least 7/4 of it, and the outer two of four are at most three times the
+/// inner two.
 const STEEPER: f64 = 4.0;
 const STEADY: f64 = 1.5;
 /// Cubics between monotone heights are monotone if slopes are at most this many times the smaller secant (Fritsch & Carlson 1980).
@@ -139,22 +140,24 @@ impl Part {
     }
 }
 
-/// The change of the slope at the second of four centres, beside a step, to one without a lip: a surface that rises above the centres beside a step would
+/// The change of the slope at the second of four centres, near a step, to one without a lip: a surface that rises above the centres beside a step would
 /// carry the load there. `outer`: the centre before the four; `smoothed`: the change of the slope before.
 fn without_lip(outer: f64, [n0, n1, n2, n3]: [f64; 4], smoothed: f64) -> f64 {
-    let [before, behind] = [n1 - n0, n2 - n1];
-    let (beyond, less, step, next) = match before.abs() < behind.abs() {
-        true => (n0 - outer, before, behind, n3 - n2),
-        false => (n3 - n2, behind, before, n0 - outer),
-    };
-    // The outermost slope is not known beside a hole or the border: it is infinite.
-    let is_level = STEEPER * less.abs().max(beyond.abs()) < step.abs();
-    if !is_level || !next.is_finite() || next * step.signum() > STEADY * step.abs() {
+    let [a, b, c, d] = [n0 - outer, n1 - n0, n2 - n1, n3 - n2];
+    // The outermost slopes are not known beside a hole or the border: they are infinite.
+    if !(a.is_finite() && d.is_finite()) {
+        return 0.0;
+    }
+    let (level, step, next) =
+        if b.abs() < c.abs() { (a.abs().max(b.abs()), c, d) } else { (c.abs().max(d.abs()), b, a) };
+    let is_beside = STEEPER * level < step.abs() && next * step.signum() <= STEADY * step.abs();
+    let is_one_before = STEEPER * b.abs().max(c.abs()) < a.abs().max(d.abs());
+    if !is_beside && !is_one_before {
         return 0.0;
     }
     let slope = (6.0 * n2 - 3.0 * n1 - 2.0 * n0 - n3) / 6.0 + smoothed;
-    let most = if less * step > 0.0 { MONOTONE * less } else { 0.0 };
-    let limited = if slope * step > 0.0 { slope.signum() * slope.abs().min(most.abs()) } else { 0.0 };
+    let most = if b * c > 0.0 { MONOTONE * b.abs().min(c.abs()) } else { 0.0 };
+    let limited = if slope * (b + c) > 0.0 { slope.signum() * slope.abs().min(most) } else { 0.0 };
     limited - slope
 }
 

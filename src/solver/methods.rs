@@ -6,7 +6,7 @@ use super::iterate::iterate;
 use super::nested::FullMultigrid;
 use super::options::Options;
 use super::stages::{share, Stage};
-use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State, Survey};
+use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State, Survey, UNDECIDED_SHARE};
 use crate::error::{Error, Result};
 use crate::methods::direct::Direct;
 use crate::methods::multigrid::CycleShape;
@@ -15,6 +15,7 @@ use crate::methods::projected_cg::ProjectedCg;
 use crate::methods::projected_newton::ProjectedNewton;
 use crate::methods::{Start, Step, Task};
 use crate::progress::{Outcome, UPDATE_RESIDUAL};
+use crate::scene::Load;
 
 /// Violation of a guess above which a start from the coarser grids is better.
 const LARGEST_USEFUL: f64 = 0.3;
@@ -181,7 +182,7 @@ impl Methods {
                 if from != Start::Nothing {
                     task.state.unload();
                 }
-                match task.state.start_on_bearing_area(task.set, self_influence, threads) {
+                match task.state.start_on_bearing_area(task.set, (self_influence, UNDECIDED_SHARE), threads) {
                     Some(most) if most <= HIDDEN_DISPLACEMENT * task.state.approach.abs() => {
                         task.problem.refresh(task.state, task.set)?;
                         task.count_products();
@@ -194,9 +195,11 @@ impl Methods {
                 }
             }
             // By force, NORM finds no way from p = 0 to the elements that end at their limit.
-            Stage::Norm if S::LIMITED && !S::FIXED && !task.problem.symmetric => {
+            Stage::Norm
+                if S::LIMITED && !S::FIXED && !task.problem.symmetric && matches!(task.state.load, Load::Force(_)) =>
+            {
                 task.state.unload();
-                if task.state.start_on_bearing_area(task.set, self_influence, threads).is_none() {
+                if task.state.start_on_bearing_area(task.set, (self_influence, f64::INFINITY), threads).is_none() {
                     task.state.start(self_influence);
                 }
             }

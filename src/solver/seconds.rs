@@ -2,8 +2,9 @@
 //!
 //! A product of n elements takes `n log n` operations, and its arrays exceed one cache after the other.
 
-/// The power of the number of elements with which seconds grow (docs/performance.md), and the largest that samples may show.
+/// The power of the number of elements with which seconds grow (docs/performance.md).
 pub const GROWTH: f64 = 1.1;
+/// The largest power that samples may show.
 const LARGEST_GROWTH: f64 = 1.2;
 /// The least power of the number of elements with which seconds of set-ups grow.
 const LEAST_SETUP_GROWTH: f64 = 0.1;

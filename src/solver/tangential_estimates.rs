@@ -170,8 +170,8 @@ impl Solved<'_> {
             return 0.0;
         }
         let (grid, p) = (&state.grid, &state.p);
-        let slips = |i: usize| solution.stick_slip[i] == SLIP;
         let bound = |i: usize| friction.coefficient.at(i) * p[i];
+        let slips = |i: usize| solution.stick_slip[i] == SLIP && bound(i) > 0.0;
         let turn = |i: usize, (at, last): (usize, usize), step: usize| {
             if at == 0 || at == last || bound(i) <= 0.0 || !slips(i - step) || !slips(i + step) {
                 return 0.0;

@@ -1,6 +1,7 @@
 //! Elements at their pressure limit are in contact: in searches, in corrected areas, and for each method.
 
 use contact_normal::grid::Grid;
+use contact_normal::influence::Table;
 use contact_normal::scene::{Bodies, Each, Load, PressureLimit, Scene};
 
 use contact_normal::solver::{quantities, solve, solve_to_accuracy, Accuracy, Method, Options, Outcome, Quantity};
@@ -86,6 +87,41 @@ fn each_method_solves_a_force_beside_limits() {
             assert!((p - q).abs() < 1e-6, "{method:?}: {p} {q}");
         }
     }
+}
+
+/// Steep rough surfaces, whose coefficients lean to one side: NORM found no way from p = 0 to the elements that end at their limit, by force. By approach it did.
+#[test]
+fn norm_solves_forces_beside_limits_with_coefficients_that_are_not_symmetric() {
+    let m = 16;
+    let grid = Grid::new(m, m, 1.0, 1.0).expect("a grid");
+    let bodies = Bodies { shear_modulus: [1.0, f64::INFINITY], poisson_ratio: [0.3; 2] };
+    let limit = Some(PressureLimit(Each::Uniform(0.03)));
+    let mut solved = 0;
+    for seed in 1..=10 {
+        let h = crate::measured_surfaces::rough(m, m, 0.8, seed);
+        let kernel = Scene::new(grid, &h, bodies, Load::Approach(0.0)).coefficients().expect("coefficients");
+        let (c, cells) = (m as i64, 0..(4 * m * m) as i64);
+        let lean = |k: i64| 1.0 + 1e-3 * ((k % (2 * c) - c) as f64).tanh();
+        let table: Vec<f64> = cells.map(|k| lean(k) * kernel.at(k % (2 * c) - c, k / (2 * c) - c)).collect();
+        let influence = Some(Table::new(m, m, &table, &grid).expect("a table"));
+        let of = |load: Load| {
+            let plain = Scene::new(grid, &h, bodies, load);
+            let scene = Scene { influence: influence.clone(), pressure_limit: limit, ..plain };
+            let (solver, outcome, _) =
+                solve(&scene, &Options { tolerance: 1e-6, ..Options::default() }).expect("a solve");
+            (outcome, solver.state().approach, solver.state().force())
+        };
+        let force = 0.05 * 0.03 * (m * m) as f64;
+        let (outcome, approach, _) = of(Load::Force(force));
+        if outcome == Outcome::Converged {
+            solved += 1;
+            let (again, _, carried) = of(Load::Approach(approach));
+            assert_eq!(again, Outcome::Converged, "seed {seed}");
+            assert!((carried / force - 1.0).abs() < 1e-3, "seed {seed}: {carried} for {force}");
+        }
+    }
+    println!("{solved} of 10");
+    assert!(solved >= 9, "{solved}");
 }
 
 /// With a limit there is no estimate of the error, and so no tolerance from it. Nor is there one from the start of NORM.

@@ -130,11 +130,11 @@ fn rough_heights_beside_holes_stay_near_the_heights() {
     assert!(lowest(&refined) > lowest(&h) - 0.35, "{} and {}", lowest(&refined), lowest(&h));
 }
 
-/// A plateau beside a trench, a step and a pit of one element: cubics rose above it by 7 % of the depth, and this lip carried the load.
+/// A plateau beside a step and a pit of one element: cubics rose above it by 7 % of the depth, and this lip carried the load.
 #[test]
 fn plateaus_beside_steps_and_pits_have_no_lips() {
     let grid = Grid::new(24, 16, 1.0, 1.0).expect("a grid");
-    let is_deep = |x: usize, y: usize| x >= 14 || (x, y) == (3, 7) || (8..10).contains(&x);
+    let is_deep = |x: usize, y: usize| x >= 14 || (x, y) == (6, 7);
     let h: Vec<f64> = (0..grid.len()).map(|i| if is_deep(i % 24, i / 24) { 1.0 } else { 0.0 }).collect();
     for repeats in [false, true] {
         let refined = refine(&h, &grid, (4, 4), (repeats, repeats)).expect("memory");

@@ -38,7 +38,9 @@ def columns_of(text: str, columns: tuple[int, int], path: str | os.PathLike[str]
     commas, width, others, among = has_decimal_commas(lines), 0, list[str](), ""
     behind = ""
     # A point has two numbers at least, each of two halves.
-    if not commas and (reason := cut_decimals([line for line in lines if line.count(",") > 2 and ";" not in line])):
+    halves = [line for line in lines if line.count(",") > 2 and ";" not in line]
+    # Beside numbers with points, those such as 0001 are counts and dates.
+    if not commas and not any("." in line for line in halves) and (reason := cut_decimals(halves)):
         raise ValueError(f"{path} has {reason}")
     for line in lines:
         words = _words(line, commas)

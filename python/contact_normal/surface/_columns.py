@@ -23,9 +23,14 @@ _LABEL = (rf"(?<![^\W_])(?P<name>{_NAMES})(?:[ _-]?(?:axis|position|pos|coordina
           rf"|(?:\s+in\s+|\s*,\s*|[\s_]+)(?P<bare>(?:{_SYMBOLS}|(?-i:m)|{_WORDS})(?![^\W_])))?")
 _WORD = re.compile(rf"{_LABEL}|[^\s,;|\[\](){{}}<>]+(?:\s*[\[({{<][^\])}}>]*[\])}}>])?", re.IGNORECASE)
 
-# A unit that stands for itself. After a number it is that of a length, before one it is a word.
-_UNIT = re.compile(rf"(?<![^\W_])(?<!\d\s)(?:{_SYMBOLS}|{_WORDS})(?![^\W_/])(?!\s*\d)"
-                   rf"|\[[^\[\]]*(?<![^\W_])(?:{_SYMBOLS}|(?-i:m)|{_WORDS})\s*\]|units?\s*[:=]\s*m\b", re.IGNORECASE)
+# A unit that stands for itself. Beside a number it is that of a length, before / that of another quantity or a folder;
+# words as Meter in Meter Ltd. are names.
+_NO_VALUE = r"(?!\s*[\])}>]?\s*[:=]?\s*[-+.]?\d)"
+_UNIT = re.compile(rf"(?<![^\W_])(?<!\d\s)(?!(?-i:[A-Z]\w+ [A-Z]))(?:{_SYMBOLS}|{_WORDS})(?![^\W_]|/){_NO_VALUE}"
+                   rf"|\[[^\[\]]*(?<![^\W_])(?:{_SYMBOLS}|(?-i:m)|{_WORDS})\s*\]{_NO_VALUE}|units?\s*[:=]\s*m\b", re.IGNORECASE)
+
+# A value behind a name, as in Step x [mm]: 1. Such a line is of no column.
+_VALUE = re.compile(r"[:=]\s*[-+.]?\d")
 
 # So much of a line is quoted.
 _QUOTED = 60
@@ -54,9 +59,13 @@ def columns_of(path: str | os.PathLike[str], count: int) -> Columns:
     words = [_words_of(line) for line in lines]
     # A line for each column.
     named = [[one for one in each if one.kind and one.unit] for each in words]
-    alone = [each[0] for each in named if len(each) == 1]
+    alone = [each[0] for line, each in zip(lines, named) if len(each) == 1 and not _VALUE.search(line)]
     for each in (*words, alone):
-        units = {one.kind: one.unit for one in each if one.kind and one.unit}
+        units = dict[str, str]()
+        for one in each:
+            if one.kind and one.unit:
+                # Of several columns of heights the first one counts.
+                units.setdefault(one.kind, one.unit)
         if len(units) == 3:
             if not all(same_length(units["x"], other) for other in units.values()):
                 told = ", ".join(f"{name} in {unit}" for name, unit in units.items())
@@ -65,7 +74,10 @@ def columns_of(path: str | os.PathLike[str], count: int) -> Columns:
             return Columns(unit, _order_of(each, count), kinds.index("y") < kinds.index("x"))
     doubt = next((line for line in lines if _UNIT.search(line)), None)
     order = next((found for each in words if (found := _order_of(each, count))), None)
-    return Columns(None, order, False, doubt and (doubt if len(doubt) <= _QUOTED else doubt[:_QUOTED] + "..."))
+    # A line of x, y and z alone says their order among more columns, too.
+    three = next((found for each in words if (found := _order_of(each, 3))), None)
+    is_y_first = order is None and three is not None and three[1] < three[0]
+    return Columns(None, order, is_y_first, doubt and (doubt if len(doubt) <= _QUOTED else doubt[:_QUOTED] + "..."))
 
 
 def _words_of(line: str) -> list[_Label]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from .._arguments import Doubles
 
 # Lists have at most this many columns: x y z, colours, intensities; and at least this many lines.
-_COLUMNS, _LINES = 8, 6
+MOST_COLUMNS, _LINES = 8, 6
 
 # At least this part of the places of a grid has a point.
 _LEAST = 0.5
@@ -33,7 +33,7 @@ class Lattice(NamedTuple):
 
 def may_be_list(shape: tuple[int, int]) -> bool:
     """Whether an array of this shape may be a list of points."""
-    return 3 <= shape[1] <= _COLUMNS and shape[0] >= _LINES
+    return 3 <= shape[1] <= MOST_COLUMNS and shape[0] >= _LINES
 
 
 def lattice_of(values: Any) -> Lattice | None:

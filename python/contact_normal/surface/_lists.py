@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import os
+import re
 import warnings
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from .._texts import text_of
 from ._columns import Columns, columns_of
 from ._given import SIZES, steps_of, with_unit
 from ._heights import Heights, heights
-from ._lattice import Lattice, lattice_of, may_be_list
+from ._lattice import MOST_COLUMNS, Lattice, lattice_of, may_be_list
 from ._not_a_map import why
 from ._texts import of_text
 
@@ -37,7 +39,7 @@ def of_list(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) ->
     if given.get("axes", "yx") != "yx":
         raise ValueError(f"{path} has x, y and z of points, and no indices: leave out axes; where the first column is y, "
                          "exchange the columns, or name them in a header, # y x z")
-    if said.doubt:
+    if said.doubt and not given.get("units"):
         warnings.warn(f"{path}: the unit in the line '# {said.doubt}' is not read: x, y and z are taken to be in one unit; "
                       "a line # x [mm] y [mm] z [mm] names it", stacklevel=4)
     if is_y_first:
@@ -47,8 +49,15 @@ def of_list(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) ->
 
 def of_text_list(path: str | os.PathLike[str], given: dict[str, Any]) -> Heights | None:
     """Heights of a text that other packages read as a map, if it is a list of points of a grid."""
-    try:
-        values = of_text(path, ".txt")
-    except ValueError:
+    first = next((line for each in text_of(path).splitlines() if (line := each.split("#")[0].strip())), "")
+    # A map is left to them before all of it is read.
+    if len(re.findall(r"[^\s;]+", first)) > MOST_COLUMNS:
         return None
+    with warnings.catch_warnings():
+        # `has_empty_cells` has told them.
+        warnings.simplefilter("ignore")
+        try:
+            values = of_text(path, ".txt")
+        except ValueError:
+            return None
     return of_list(path, values, given)

@@ -123,8 +123,9 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         refuse_esri_grid(path)
     # Some instruments write binary files with these endings.
     of_numbers = end in (".txt", ".dat", ".csv") and is_text(path)
+    of_others = end in _TEXTS and Path(path).exists() and is_text(path)
     # SurfaceTopography would shift the columns after an empty cell.
-    if of_numbers or end in (".tsv", ".asc") and Path(path).exists() and is_text(path) and has_empty_cells(path):
+    if of_numbers or of_others and has_empty_cells(path):
         told = header_of(path, bool(SIZES & set(given)))
         if given.get("axes") == "xy" and told.get("size"):
             # The width is that of the columns of the file, which are y then.
@@ -134,7 +135,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         return made
     if end == ".nc":
         return _of_netcdf(path, variable, given)
-    if end in _TEXTS and Path(path).exists() and is_text(path) and (found := of_text_list(path, given)) is not None:
+    if of_others and (found := of_text_list(path, given)) is not None:
         return found
     topography = of_instrument(path, end, variable, bool(SIZES & set(given)))
     if end == ".mat":

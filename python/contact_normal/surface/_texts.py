@@ -40,6 +40,8 @@ def of_text(path: str | os.PathLike[str], end: str) -> Any:
                          f"{_BETWEEN[delimiter]}; {commas}put # before other lines, and nan where nothing was measured") from error
     if delimiter == "," and (reason := cut_decimals(cells)):
         raise ValueError(f"{path} has {reason}")
+    if delimiter == "\t" and (empty := np.flatnonzero(np.isnan(values).all(axis=0))).size:
+        warnings.warn(f"column {empty[0]}, counted from 0, has no number: a column of holes", stacklevel=3)
     return values
 
 
@@ -75,8 +77,6 @@ def _between_tabs(lines: list[str]) -> list[str] | None:
     # Two tabs between all numbers stand for one.
     if not all(any(cell for row in rows for cell in row[first::2]) for first in (0, 1)) or all(cell for row in rows for cell in row):
         return None
-    if empty := [k for k in range(len(rows[0])) if not any(row[k] for row in rows)]:
-        warnings.warn(f"column {empty[0]}, counted from 0, has no number: a column of holes", stacklevel=4)
     return ["\t".join(cell or "nan" for cell in row) for row in rows]
 
 

@@ -1159,12 +1159,12 @@ typedef struct contact_normal_friction {
   double hardening;
   /*
    mu that particles of the interface had before the step, of a law with memory, `[my][mx]`; default NULL: that at rest, and with
-   `continues` what the handle found. Zeros alone, which a step without a law writes, are as NULL. In transient rolling a particle comes from its
+   `continues` what the handle found. Zeros alone, which a step without a law writes, count as NULL. In transient rolling a particle comes from its
    old place; steady rolling does not read it.
    */
   const double *previous_coefficient;
   /*
-   And their yield limits; default NULL, and zeros alone: `yield_limit`.
+   Their yield limits; default NULL: `yield_limit`. Zeros alone count as NULL.
    */
   const double *previous_yield_limit;
   /*
