@@ -84,6 +84,12 @@ impl Survey {
         if !matches!(state.load, Load::Force(_)) || state.has_limited() {
             return false;
         }
+        // The force alone gives the pressure of one element whose neighbours are apart.
+        let is_near =
+            |i: usize| !state.contact[i] && state.deformed_distance(i) <= 2.0 * ROUND_OFF * state.approach.abs();
+        if self.contact_count == 1 && !(0..state.p.len()).any(is_near) {
+            return false;
+        }
         let in_contact = (0..state.p.len()).filter(|&i| state.contact[i]);
         let displaced = in_contact.map(|i| state.u[i].powi(2)).sum::<f64>().sqrt();
         displaced > state.round_off * self.squares.sqrt()

@@ -632,3 +632,19 @@ fn displacements_below_the_round_off_of_distances_are_not_called_solved() {
         assert!(outcome != Outcome::Converged || off <= 1e-2 * largest, "{offset}: {off}");
     }
 }
+
+/// One element carries the force whatever its displacement.
+#[test]
+fn one_element_carries_a_force_whose_displacement_is_below_round_off() {
+    let point = (Grid::new(1, 1, 1.0, 1.0).unwrap(), vec![1.0]);
+    let cone = (
+        Grid::new(5, 5, 1.0, 1.0).unwrap(),
+        (0..25).map(|i| 1e6 + f64::from(i % 5 - 2).hypot(f64::from(i / 5 - 2))).collect(),
+    );
+    for (grid, h) in [point, cone] {
+        let scene = Scene::new(grid, &h, rigid_on(1.0), Load::Force(1e-17));
+        let (solver, outcome, _) = solve(&scene, &Options::default()).unwrap();
+        assert_eq!(outcome, Outcome::Converged);
+        assert!((solver.state().force() / 1e-17 - 1.0).abs() < 1e-9, "{}", solver.state().force());
+    }
+}
