@@ -6,9 +6,9 @@ use crate::grid::Grid;
 use crate::memory::zeros;
 
 /// A step between two centres has this many times both slopes on one side, and at least 1/STEADY of the slope on its other side. On a parabola successive
-/// slopes differ by equal amounts: the slope beyond one that is four times another is at least 7/4 of it, and the outer two of four are at most three times the
-/// inner two.
-const STEEPER: f64 = 4.0;
+/// slopes differ by equal amounts: the slope beyond one that is eight times another is at least 15/8 of it, and the outer two of four are at most three times the
+/// inner two. Of waves of few elements only some intervals are then taken for steps.
+const STEEPER: f64 = 8.0;
 const STEADY: f64 = 1.5;
 /// Cubics between monotone heights are monotone if slopes are at most this many times the smaller secant (Fritsch & Carlson 1980).
 const MONOTONE: f64 = 3.0;
