@@ -14,11 +14,6 @@ use crate::scene::Plain;
 /// Why refinement to an accuracy is refused.
 const ONE_GRID: &str = "own coefficients are those of one grid, and an accuracy needs several";
 
-/// Whether a layer adds its compliance to the coefficients of elements on themselves.
-fn has_layer(others: &[Option<&dyn Effect>]) -> bool {
-    others.iter().flatten().any(|other| other.name() == "layer")
-}
-
 impl Effect for Table {
     fn name(&self) -> &'static str {
         "influence"
@@ -47,10 +42,7 @@ impl Effect for Table {
         Ok(())
     }
 
-    fn check_load(&self, _: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
-        if has_layer(others) {
-            return Ok(());
-        }
+    fn check_load(&self, _: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<()> {
         self.check_largest()
     }
 
@@ -99,10 +91,7 @@ impl Effect for RowTables {
         Ok(())
     }
 
-    fn check_load(&self, _: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
-        if has_layer(others) {
-            return Ok(());
-        }
+    fn check_load(&self, _: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<()> {
         self.check_largest()
     }
 

@@ -24,11 +24,13 @@
 //! of the corrected area. Straight pieces and straight ends of the surface have an error of half an element. Ends in steps have the square root of
 //! their number.
 
+mod areas;
 mod curvature;
 mod ends;
 mod jumps;
 mod kink;
 
+use areas::{correction_off, outline_off};
 pub use curvature::Curvature;
 pub use ends::{at_ends, beyond_ends, pressures_at_ends};
 pub use jumps::at_jumps;
@@ -65,10 +67,6 @@ const PEAK_ERROR: f64 = 0.1;
 const PRESSURES_ERROR: f64 = 0.25;
 const SINGULAR_PEAK: f64 = 0.18;
 const SHARP_PEAK: f64 = 0.08;
-/// Error of the corrected area, over the correction, and in elements along straight outlines and edges.
-const CORRECTION_OFF: f64 = 0.3;
-const STRAIGHT_OFF: f64 = 0.4;
-const EDGE_OFF: f64 = 0.5;
 
 /// Errors of the force (or the approach) on a grid, positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -225,8 +223,7 @@ pub fn estimate(
     // Before pressures carry a force, `carried` is infinite.
     let whole = finest.grid.len() as f64 * finest.grid.element_area();
     let area = |error: f64| error.is_finite().then_some(error.min(whole));
-    // A layer that gives way more than elements has pressures that fall linearly at the rim, where counting has no bias to correct.
-    let correction_off = if problem.coefficients.has_layer() { 1.0 } else { CORRECTION_OFF };
+    let correction_off = correction_off(problem, finest);
     let count = ledger.len();
     for (i, row) in ledger.iter_mut().enumerate() {
         let is_last = i + 1 == count;
@@ -256,23 +253,6 @@ pub fn estimate(
     let halving = Halving { seconds: Some(more.powf(GROWTH) * seconds), error: Some(falling) };
     let limit = if parts.error() >= hidden { Limit::Grid } else { Limit::Tolerance };
     (limit, halving)
-}
-
-/// The error of the contact area along its outline, in elements.
-fn outline_off(problem: &Problem, outline: &Outline) -> f64 {
-    let curved = (outline.edges - outline.straight_edges) as f64;
-    let straight = (outline.straight.0 + outline.straight.1) as f64;
-    STRAIGHT_OFF * straight + edges_off(problem, outline) + curved.sqrt()
-}
-
-/// The error of the contact area along straight ends of the surface, in elements: half of these if all ends are straight. A circle has four short
-/// straight pieces, which the pieces in steps compensate.
-fn edges_off(problem: &Problem, outline: &Outline) -> f64 {
-    if problem.exact_edges || outline.edges == 0 {
-        return 0.0;
-    }
-    let straight = outline.straight_edges as f64;
-    EDGE_OFF * straight * straight / outline.edges as f64
 }
 
 /// The bits of the errors without an estimate, which are logged.

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::asked::BillOptions;
 use super::effort::effort;
 use super::omission::Omission;
-use super::verdict::{self, BillRow, Measured, MOST_MOVED};
+use super::verdict::{self, BillRow, Measured, MOST_MOVED, STICK_MOVED};
 use crate::effects;
 use crate::error::{require, Error, Result};
 use crate::grid::Grid;
@@ -211,8 +211,10 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
                     let by_elements = match quantity {
                         // On the scene's own grid changes are exact.
                         _ if doublings >= 0 => 0.0,
-                        // Near full slip it changes by more than forces do, and finer grids may have some of an empty one.
-                        Quantity::StickArea => jump,
+                        // Near full slip it changes by far more than forces do, and finer grids may have some of an empty one.
+                        Quantity::StickArea => {
+                            jump.min(STICK_MOVED * variant.moved * before.abs().max(grid.element_area()))
+                        }
                         Quantity::ContactArea => jump.min(most),
                         Quantity::Stiffness => {
                             most.min(before.abs() * found.values[q].map_or(0.0, |found| found.least))

@@ -6,6 +6,8 @@ use crate::solver::quantities::{Lack, Quantity, Sequence, SUM_RATIO};
 /// Bound on the relative change of an area, or of a peak that elements do not resolve, over the largest of the other quantities. The area
 /// of a Hertz contact changes as the approach does, that of other smooth surfaces up to twice as much.
 pub const MOST_MOVED: f64 = 3.0;
+/// The same for stick areas, which change by 1/(1 - F/(mu N)) times the force: at .999 of full slip.
+pub const STICK_MOVED: f64 = 1e3;
 
 /// Bound on the relative error of single pressures over the residual (docs/accuracy.md: a hundredth of the target for these).
 const ERROR_PER_RESIDUAL: f64 = 100.0;
