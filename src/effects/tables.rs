@@ -39,10 +39,6 @@ impl Effect for Table {
             let Grid { mx: columns, my: rows, .. } = grid;
             return invalid(format!("influence is a table of {mx} x {my} elements; the grid has {columns} x {rows}"));
         }
-        Ok(())
-    }
-
-    fn check_load(&self, _: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<()> {
         self.check_largest()
     }
 
@@ -88,10 +84,6 @@ impl Effect for RowTables {
             let Grid { mx: columns, my: rows, .. } = grid;
             return invalid(format!("row_tables are those of {mx} x {my} elements; the grid has {columns} x {rows}"));
         }
-        Ok(())
-    }
-
-    fn check_load(&self, _: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<()> {
         self.check_largest()
     }
 

@@ -59,6 +59,7 @@ mod long_rows;
 mod meaningless;
 mod measured_surfaces;
 mod operator;
+mod own_coefficients;
 mod paper_tables;
 mod patches;
 mod periodic;
