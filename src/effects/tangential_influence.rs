@@ -113,14 +113,8 @@ impl TangentialInfluence<'_> {
             }
         }
         let own = self.at(0, 0);
-        if let Some(value) = own.iter().find(|value| !value.is_finite()) {
-            let rule = "coefficients must be finite";
-            return Err(Error::NotFinite(format!(
-                "friction->influence at offset (0, 0) is {}; {rule}",
-                Number(*value)
-            )));
-        }
-        if !(own[0] > 0.0 && own[1] > 0.0) {
+        // A NaN is refused below, by the name of its table.
+        if own[0] <= 0.0 || own[1] <= 0.0 {
             let rule = "a traction must displace its own element along";
             return Err(Error::NotPositiveDefinite(format!("friction->influence at offset (0, 0) is {own:?}; {rule}")));
         }
