@@ -144,8 +144,8 @@ impl Part {
 /// carry the load there. `outer`: the centre before the four; `smoothed`: the change of the slope before.
 fn without_lip(outer: f64, [n0, n1, n2, n3]: [f64; 4], smoothed: f64) -> f64 {
     let [a, b, c, d] = [n0 - outer, n1 - n0, n2 - n1, n3 - n2];
-    // The outermost slopes are not known beside a hole or the border: they are infinite.
-    if !(a.is_finite() && d.is_finite()) {
+    // Beside a hole or the border the outer slope is not known: it is infinite.
+    if a.is_infinite() {
         return 0.0;
     }
     let (level, step, next) =

@@ -55,27 +55,27 @@ pub fn have_stages((px, py): (usize, usize)) -> bool {
 
 /// Whether there are stages for a length. There are none up to the largest radix, where one stage suffices.
 fn has_stages(length: usize) -> bool {
-    let without = |mut rest: usize, prime: usize| {
-        while rest > 0 && rest % prime == 0 {
-            rest /= prime;
-        }
-        rest
-    };
-    length > LONGEST && [2, 3, 5].into_iter().fold(length, without) == 1
+    let mut rest = length;
+    for prime in [2, 3, 5] {
+        divide(&mut rest, prime);
+    }
+    length > LONGEST && rest == 1
+}
+
+/// Divides by a factor as often as it can. Returns how often.
+fn divide(rest: &mut usize, factor: usize) -> usize {
+    let mut count = 0;
+    while *rest > 0 && *rest % factor == 0 {
+        (*rest, count) = (*rest / factor, count + 1);
+    }
+    count
 }
 
 /// Factors of a length: a four first, the other fours last, the other factors between.
 pub(crate) fn radices(length: usize) -> Option<Vec<usize>> {
-    let (mut rest, mut fours, mut others) = (length, 0, Vec::new());
-    while rest > 0 && rest % 4 == 0 {
-        (rest, fours) = (rest / 4, fours + 1);
-    }
-    for radix in [5, 3, 2] {
-        while rest > 0 && rest % radix == 0 {
-            rest /= radix;
-            others.push(radix);
-        }
-    }
+    let mut rest = length;
+    let fours = divide(&mut rest, 4);
+    let others = [5, 3, 2].map(|radix| vec![radix; divide(&mut rest, radix)]).concat();
     let first = fours.min(1);
     let radices = [vec![4; first], others, vec![4; fours - first]].concat();
     (rest == 1 && radices.len() > 1).then_some(radices)

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from .._texts import text_of
 from ._columns import Columns, columns_of
 from ._given import SIZES, steps_of, with_unit
+from ._headers import head_of
 from ._heights import Heights, heights
 from ._lattice import MOST_COLUMNS, Lattice, lattice_of, may_be_list
 from ._not_a_map import why
@@ -49,7 +49,7 @@ def of_list(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) ->
 
 def of_text_list(path: str | os.PathLike[str], given: dict[str, Any]) -> Heights | None:
     """Heights of a text that other packages read as a map, if it is a list of points of a grid."""
-    first = next((line for each in text_of(path).splitlines() if (line := each.split("#")[0].strip())), "")
+    first = next((line for each in head_of(path).splitlines() if (line := each.split("#")[0].strip())), "")
     # A map is left to them before all of it is read.
     if len(re.findall(r"[^\s;]+", first)) > MOST_COLUMNS:
         return None
