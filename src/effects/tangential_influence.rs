@@ -4,6 +4,7 @@ use toeplitz::coefficients::SYMMETRY;
 
 use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::Grid;
+use crate::influence::LARGEST_RATIO;
 use crate::memory::copied;
 
 /// The caller's tables.
@@ -120,7 +121,27 @@ impl TangentialInfluence<'_> {
         }
         let largest = own[0].max(own[1]);
         let in_x_too = !is_steady || self.cross.is_some();
-        tables().try_for_each(|(values, symmetry)| self.check_symmetry(values, (symmetry, in_x_too), largest))
+        tables().try_for_each(|(values, symmetry)| self.check_symmetry(values, (symmetry, in_x_too), largest))?;
+        self.check_largest()
+    }
+
+    /// Refuses coefficients that, in the mean with those of the opposite offset, exceed the ones of an element on itself: two such elements alone have
+    /// an indefinite matrix.
+    fn check_largest(&self) -> Result<()> {
+        let [xx, yy, _] = self.at(0, 0);
+        let most = [xx, yy, xx.sqrt() * yy.sqrt()].map(|own| LARGEST_RATIO * own);
+        let (last_x, last_y) = (self.cx as i64 - 1, self.cy as i64 - 1);
+        for (kx, ky) in (0..=last_y).flat_map(|ky| (-last_x..=last_x).map(move |kx| (kx, ky))) {
+            let (one, opposite) = (self.at(kx, ky), self.at(-kx, -ky));
+            if let Some(k) = (0..3).find(|&k| 0.5 * (one[k] + opposite[k]).abs() > most[k]) {
+                let (name, value, own) = (SYMMETRIES[k].name, Number(one[k]), Number(most[k] / LARGEST_RATIO));
+                return Err(Error::NotPositiveDefinite(format!(
+                    "{name} at offset ({kx}, {ky}) is {value}, and at (0, 0) it may be {own} at most: no elastic body moves another element more than \
+                     the one that is pulled. Offset (0, 0) is value [cy][cx] of the table"
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// Refuses tables that suit no motion on the grid: each solve refuses those that do not suit its own.

@@ -12,6 +12,7 @@ use toeplitz::coefficients::SYMMETRY;
 use super::tangential_influence::{TangentialInfluence, SCALE};
 use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::Grid;
+use crate::influence::LARGEST_RATIO;
 
 /// Names of the components xx, yy, xy in messages.
 const NAMES: [&str; 3] =
@@ -78,7 +79,7 @@ impl TangentialInfluence<'_> {
         Ok(largest)
     }
 
-    /// Refuses tables of two rows on each other that are not symmetric to round-off.
+    /// Refuses tables of two rows on each other that are not symmetric to round-off, or larger than any coefficient of an element on itself.
     fn check_pair(&self, (jy, iy): (usize, usize), largest: f64) -> Result<()> {
         for kx in 1 - self.cx as i64..self.cx as i64 {
             let (one, other) = (self.of_rows(jy, iy, kx), self.of_rows(iy, jy, -kx));
@@ -89,6 +90,15 @@ impl TangentialInfluence<'_> {
                     format!("of rows (jy {jy}, iy {iy}) at offset {kx} and {b} of rows (jy {iy}, iy {jy}) at {}", -kx);
                 let rule = "the operator must be symmetric";
                 return Err(Error::Unsupported(format!("{} is {a} {places}; {rule}", NAMES[component])));
+            }
+            if let Some(component) = (0..4).find(|&component| one[component].abs() > LARGEST_RATIO * largest) {
+                // yx of two rows is the xy of these rows the other way round.
+                let (jy, iy, kx) = if component < 3 { (jy, iy, kx) } else { (iy, jy, -kx) };
+                let (name, value, own) = (NAMES[component.min(2)], Number(one[component]), Number(largest));
+                return Err(Error::NotPositiveDefinite(format!(
+                    "{name} of rows (jy {jy}, iy {iy}) at offset {kx} is {value}, and at most {own} of an element on itself: no elastic body moves another \
+                     element more than the one that is pulled"
+                )));
             }
         }
         Ok(())

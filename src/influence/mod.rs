@@ -37,3 +37,4 @@ pub use patches::Patches;
 pub use periodic::Periodic;
 pub use row_tables::RowTables;
 pub use table::Table;
+pub(crate) use table::LARGEST_RATIO;

@@ -17,7 +17,7 @@ use crate::grid::Grid;
 use crate::memory::{blank, Held};
 
 /// Ratio to the coefficient of an element on itself beyond which another is an error, not rounding.
-pub(super) const LARGEST_RATIO: f64 = 1.001;
+pub(crate) const LARGEST_RATIO: f64 = 1.001;
 
 /// Refuses a scale that is not positive and finite.
 pub(super) fn check_scale(name: &str, scale: f64) -> Result<()> {

@@ -224,6 +224,12 @@ fn what_is_no_symmetric_operator_or_does_not_fit_is_refused_by_name() {
     assert!(matches!(error, Error::NotFinite(_)) && error.to_string().contains("row_tables[2] (xy)"), "{error}");
     let error = refused(&changed(1, (6 + 1) * width + 8 + BEYOND, &|value| -value), &|_| {});
     assert!(matches!(error, Error::NotPositiveDefinite(_)) && error.to_string().contains("(jy 1, iy 1)"), "{error}");
+    // Larger than any coefficient of an element on itself, all of which are below 2.
+    let error = refused(&changed(2, place, &|_| 2.0), &|_| {});
+    assert!(
+        matches!(error, Error::NotPositiveDefinite(_)) && error.to_string().contains("(xy) of rows (jy"),
+        "{error}"
+    );
     type Change = &'static dyn Fn(&mut Friction<'_>);
     let own: [(&str, Change); 6] = [
         ("row_tables->cx is 7", &|friction| friction.influence.iter_mut().for_each(|own| own.cx = 7)),

@@ -268,3 +268,38 @@ fn own_coefficients_go_with_row_tables_and_coatings() {
         assert!(matches!(solve(&without, &options).map(|_| ()), Err(Error::Unsupported(_))));
     }
 }
+
+#[test]
+fn coefficients_larger_than_those_of_an_element_on_itself_are_refused() {
+    let (grid, h) = ball(12, 10);
+    let refusal = |influence: TangentialInfluence<'_>| {
+        let friction = Friction { influence: Some(influence), ..pushed() };
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, STEEL, Load::Force(900.0)) };
+        match solve(&scene, &Options::default()) {
+            Err(Error::NotPositiveDefinite(message)) => message,
+            other => panic!("{:?}", other.err()),
+        }
+    };
+    let (cx, cy) = (grid.mx + BEYOND, grid.my + BEYOND);
+    // Offset (0, 0) is the first value, as FFTs need it. Without Poisson's ratio xy is 0, and xx and yy are symmetric in this layout, too.
+    let mut first = tables_of(&Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.0; 2] }, &grid, 1.0);
+    for table in &mut first {
+        let centred = table.clone();
+        for (k, value) in table.iter_mut().enumerate() {
+            *value = centred[(k / (2 * cx) + cy) % (2 * cy) * 2 * cx + (k + cx) % (2 * cx)];
+        }
+    }
+    assert!(refusal(influence(&grid, &first, 1.0)).contains("(xx)"));
+    // One table whose coefficients at neighbours are too large by 1 %.
+    for (component, place) in [(0, (1, 0)), (1, (0, 1)), (2, (1, 1))] {
+        let mut changed = tables(&grid, 1.0);
+        let own = changed[component.min(1)][cy * 2 * cx + cx];
+        for (sign_x, sign_y) in [(1, 1), (1, -1), (-1, 1), (-1, -1)] {
+            let (x, y) = (cx as i64 + sign_x * place.0, cy as i64 + sign_y * place.1);
+            let sign = if component == 2 { (sign_x * sign_y) as f64 } else { 1.0 };
+            changed[component][y as usize * 2 * cx + x as usize] = sign * 1.01 * own;
+        }
+        let message = refusal(influence(&grid, &changed, 1.0));
+        assert!(message.contains(["(xx)", "(yy)", "(xy)"][component]) && message.contains("[cy][cx]"), "{message}");
+    }
+}
