@@ -33,7 +33,7 @@ def run(given: argparse.Namespace) -> int:
     if plot and Path(plot).suffix not in PICTURES:
         raise ValueError(f"{plot} must end in one of {', '.join(PICTURES)}")
     if plot:
-        refuse_unless_writable(plot)
+        refuse_unless_writable(plot, given.file)
     surface = gap_of(given)
     bill = what_matters(surface.h, surface.dx, surface.dy, target=given.target, quantities=given.quantities, pairs=given.pairs,
                         **effects_of(given, surface.period), **scene_arguments(given))

@@ -36,9 +36,7 @@ def run(given: argparse.Namespace) -> int:
     for name, endings in (*((output, FIELDS) for output in given.output), *([(plot, PICTURES)] if plot else [])):
         if Path(name).suffix not in endings:
             raise ValueError(f"{name} must end in one of {', '.join(endings)}")
-        if Path(name).exists() and Path(given.file).exists() and Path(name).samefile(given.file):
-            raise ValueError(f"{name} is the file of the surface, which would be lost: name another output")
-        refuse_unless_writable(name)
+        refuse_unless_writable(name, given.file)
     surface = gap_of(given)
     progress = has_terminal() if given.progress is None else given.progress
     result = solve(surface.h, surface.dx, surface.dy, units=surface.units, progress=progress,

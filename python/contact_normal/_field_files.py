@@ -43,8 +43,15 @@ def write_fields(path: str | Path, result: Result) -> None:
         raise ValueError(f"{path}: results are written as {', '.join(FIELDS)}, pictures as {', '.join(PICTURES)}")
 
 
-def refuse_unless_writable(path: str | Path) -> None:
+def refuse_unless_writable(path: str | Path, surface: str | Path | None = None) -> None:
     """Refuses a file that cannot be written, before a long solve.
+
+    Parameters
+    ----------
+    path : str or path
+        The file.
+    surface : str or path, optional
+        The file of the surface, which must be another one.
 
     Raises
     ------
@@ -52,8 +59,12 @@ def refuse_unless_writable(path: str | Path) -> None:
         If its folder does not exist or is not writable.
     ImportError
         If its format needs a package that is not installed; the message names it.
+    ValueError
+        If it is the file of the surface.
     """
     path = Path(path)
+    if surface is not None and path.exists() and Path(surface).exists() and path.samefile(surface):
+        raise ValueError(f"{path} is the file of the surface, which would be lost: name another output")
     if not path.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {path.parent}")
     if path.is_dir():

@@ -17,6 +17,12 @@ def text_of(path: str | os.PathLike[str]) -> str:
     return decoded(Path(path).read_bytes())
 
 
+def starts_with_mark(path: str | os.PathLike[str]) -> bool:
+    """Whether a file begins with the byte order mark of UTF-8 or UTF-16."""
+    with open(path, "rb") as file:
+        return file.read(3).startswith((codecs.BOM_UTF8, *_MARKS))
+
+
 def decoded(data: bytes, cut: bool = False) -> str:
     """The text of bytes. `cut`: they may end within a character."""
     named = [encoding for mark, encoding in _MARKS.items() if data.startswith(mark)]

@@ -41,6 +41,14 @@ class Arguments(unittest.TestCase):
             solve(layer=np.ma.masked_where(H > 0.2, 1e-6 * H))
         with self.assertRaisesRegex(TypeError, "pressure is a masked array"):
             solve(pressure=masked)
+        # A handle copies its effects before they are checked.
+        effects = {"layer": np.ma.masked_where(H > 0.2, 1e-6 * H), "shear_modulus": np.ma.array([1e3, 9e9], mask=[False, True]),
+                   "patches": (np.ma.masked_where(H > 0.2, (H > 0.1).astype(int)), np.eye(2))}
+        for name, value in effects.items():
+            with self.assertRaisesRegex(TypeError, f"{name}.* is a masked array"):
+                cn.Solver(*H.shape, 0.5, 0.5, **{"shear_modulus": 82000.0, "poisson_ratio": 0.28, name: value})
+            with self.assertRaisesRegex(TypeError, f"{name}.* is a masked array"):
+                cn.solve(H, 0.5, 0.5, force=1.0, **{"shear_modulus": 82000.0, "poisson_ratio": 0.28, name: value})
 
     def test_integer_arrays_hold_integers(self):
         factors = np.eye(2)

@@ -5,6 +5,7 @@ import importlib
 import io
 import os
 import re
+import shutil
 import stat
 import subprocess
 import sys
@@ -163,6 +164,10 @@ class Commands(unittest.TestCase):
         code, _, told = called("solve", self.folder / "two.npz", *BALL, "-o", self.folder / "two.npz")
         self.assertEqual((code, "would be lost" in told), (3, True), told)
         self.assertEqual((self.folder / "two.npz").read_bytes(), before)
+        picture = self.folder / "heights.png"
+        shutil.copy(self.npy, picture)
+        code, _, told = called("bill", picture, *BALL, "--plot", picture)
+        self.assertEqual((code, "would be lost" in told), (3, True), told)
         Gap(HEIGHTS.max() - HEIGHTS, DX, DY).write(self.folder / "gap.txt")
         for option in (("--dx", "5"), ("--level", "plane"), ("--faults",), ("--hole", "3"), ("--axes", "xy"), ("--top-first",), ("--variable", "z")):
             code, _, told = called("solve", self.folder / "gap.txt", "--gap", *option, "--force", FORCE, *STEEL)

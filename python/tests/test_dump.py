@@ -48,6 +48,18 @@ class Dumps(unittest.TestCase):
         self.assertIn(path, str(refused.exception))
         self.assertIn(b"call contact_normal_solver_solve\n", Path(path).read_bytes())
 
+    def test_the_unfinished_file_of_another_process_is_left(self):
+        path = os.path.join(self.folder.name, "failed")
+        solve = lambda: contact_normal.solve(H, 0.5, 0.5, force=500.0, max_cycles=1, tolerance=1e-18, dump=path + "-%n", **STEEL)
+        solve()
+        number = int(os.listdir(self.folder.name)[0].rpartition("-")[2])
+        # Processes on other machines may have the same number.
+        others = Path(self.folder.name) / f"contact_normal.{os.getpid()}.{number + 1}.0.part"
+        others.write_text("not finished")
+        solve()
+        self.assertEqual(sorted(os.listdir(self.folder.name)), sorted([others.name, f"failed-{number}", f"failed-{number + 1}"]))
+        self.assertEqual(others.read_text(), "not finished")
+
     def test_what_is_solved_leaves_none(self):
         path = os.path.join(self.folder.name, "failed")
         self.assertEqual(contact_normal.solve(H, 0.5, 0.5, force=500.0, dump=path, **STEEL).status, 0)

@@ -56,6 +56,26 @@ class Heights(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "has z, other; give variable"):
                 surface.read(path)
 
+    def test_a_word_in_a_row_of_numbers_is_refused(self):
+        plain = [[f"{value:.4f}" for value in row] for row in Z]
+        header = ["# Channel: Main", "# Width: 7 um", "# Height: 5 um", "# Value units: um"]
+        # A row with a word alone, in the middle and at both ends; a row of words; words within comments are read over.
+        changes = [(row, lambda cells, word=word: [word, *cells[1:]]) for word in ("***", "---", "N/A", "#N/A", "1.#QNAN", "No Data", "1e") for row in (0, 2, 4)]
+        changes += [(row, lambda cells: ["***"] * len(cells)) for row in (0, 2, 4)] + [(1, lambda cells: [*cells, "# the second row"])]
+        with tempfile.TemporaryDirectory() as folder:
+            for end, tab in ((".asc", " "), (".asc", "\t"), (".tsv", "\t"), (".xyz", " ")):
+                path = Path(folder, f"map{end}")
+                for row, change in changes:
+                    cells = [*plain[:row], change(plain[row]), *plain[row + 1:]]
+                    path.write_text("\n".join([*header, *map(tab.join, cells)]))
+                    with self.assertRaisesRegex(ValueError, f"line {row + 5} has '.*' among its numbers"):
+                        surface.read(path)
+                path.write_text("\n".join([*header, "# 1 2 3 4 5 6 7", *map(tab.join, plain)]), encoding="utf-8-sig")
+                made = surface.read(path)
+                self.assertEqual((made.z.shape, made.units, round(made.dx, 9)), ((5, 7), ("um", "N"), 1.0))
+                path.write_text("\n".join(map(tab.join, plain)), encoding="utf-8-sig")
+                np.testing.assert_allclose(surface.read(path, dx=1.0, dy=1.0).z, Z, atol=1e-4)
+
     def test_axes_are_those_of_the_lines_of_a_text(self):
         lines = "\n".join("\t".join(f"{z:.6f}" for z in row) for row in Z)
         text = f"# Channel: Height\n# Width: 14 um\n# Height: 15 um\n# Value units: um\n{lines}\n"

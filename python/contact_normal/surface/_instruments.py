@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import importlib
+import io
 import os
 import warnings
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
+
+from .._texts import starts_with_mark, text_of
+from ._texts import refuse_skipped_rows
 
 # What is said of files and topographies without sizes; the command line looks for it.
 NO_SIZE = "does not say the size of an element: give size, the lengths of the field, or dx and dy"
@@ -27,7 +32,10 @@ def of_instrument(path: str | os.PathLike[str], end: str, variable: str | None, 
         open_topography = importlib.import_module("SurfaceTopography").open_topography
     except ImportError as error:
         raise ImportError(f"{error}; files {end or 'without an end'} need SurfaceTopography: pip install 'contact-normal[surface]'") from error
-    with _tried(lambda: open_topography(os.fspath(path)), path) as reader:
+    is_marked = Path(path).is_file() and starts_with_mark(path)
+    with _tried(lambda: open_topography(io.StringIO(text_of(path)) if is_marked else os.fspath(path)), path) as reader:
+        if reader.format() == "asc":
+            refuse_skipped_rows(path)
         which = _channel(reader, variable, end, path)
         try:
             found = reader.topography(channel_index=which)

@@ -45,6 +45,38 @@ def of_text(path: str | os.PathLike[str], end: str) -> Any:
     return values
 
 
+def refuse_skipped_rows(path: str | os.PathLike[str]) -> None:
+    """Refuses a map with a word in a row of numbers. SurfaceTopography takes such a row for a line of the header, and leaves it out."""
+    rows = [line.split() for line in text_of(path).splitlines()]
+    counts = [sum(map(_is_number, row)) for row in rows]
+    full = [k for k, (row, count) in enumerate(zip(rows, counts)) if row and count == len(row)]
+    if not full:
+        return
+    width = max(len(rows[k]) for k in full)
+    if width < _LEAST_WIDTH:
+        return
+    for k, (row, count) in enumerate(zip(rows, counts)):
+        if not row or row[0].startswith("#") and row[0] != "#N/A":
+            continue
+        is_row = len(row) == width and (full[0] < k < full[-1] or len(set(row)) == 1)
+        if count < len(row) and (2 * count >= width or is_row):
+            word = next(cell for cell in row if not _is_number(cell))
+            raise ValueError(f"{path}: line {k + 1} has {word!r} among its numbers; write nan where nothing was measured, and comments on lines of their own")
+
+
+# Rows of fewer numbers may be lines of a header.
+_LEAST_WIDTH = 4
+
+
+def _is_number(cell: str) -> bool:
+    """Whether SurfaceTopography reads a cell as a number or as a hole."""
+    try:
+        float(cell)
+    except ValueError:
+        return cell.lower() == "bad"
+    return True
+
+
 # Cells between quotes.
 _QUOTED = re.compile(r'"[^"]*"')
 

@@ -9,6 +9,8 @@ use super::image::Image;
 
 /// Dumps of this process so far.
 static COUNT: AtomicU64 = AtomicU64::new(0);
+/// Most names that are tried for an unfinished file.
+const MOST_ATTEMPTS: usize = 100;
 
 /// Writes a file under a temporary name, then renames it, so that no reader finds an unfinished file. Returns its path, or the reason of the failure.
 pub(super) fn write(path: &[u8], head: &str, image: &Image) -> Result<String, String> {
@@ -18,13 +20,28 @@ pub(super) fn write(path: &[u8], head: &str, image: &Image) -> Result<String, St
         return Err("no memory for a copy of what the call was given".into());
     }
     let path = place(path)?;
-    let part = path.with_file_name(format!("contact_normal.{}.{number}.part", std::process::id()));
-    let written = write_to(&part, head, image).and_then(|()| rename(&part, &path));
+    let failed = |why| format!("{} cannot be written: {why}", path.display());
+    let (part, file) = new_part(&path, number).map_err(failed)?;
+    let written = write_to(file, head, image).and_then(|()| rename(&part, &path));
     written.map(|()| path.display().to_string()).map_err(|why| {
-        // The unfinished file may not exist.
+        // An error here changes nothing of the reason that is returned.
         let _ = remove_file(&part);
-        format!("{} cannot be written: {why}", path.display())
+        failed(why)
     })
+}
+
+/// A new file beside `path` for dump `number`, and its path. A process of another machine or container may have the same process number, and its
+/// unfinished file the same name: such a name is left out.
+fn new_part(path: &Path, number: u64) -> std::io::Result<(PathBuf, File)> {
+    let mut made = Err(std::io::ErrorKind::AlreadyExists.into());
+    for attempt in 0..MOST_ATTEMPTS {
+        let part = path.with_file_name(format!("contact_normal.{}.{number}.{attempt}.part", std::process::id()));
+        made = File::create_new(&part).map(|file| (part, file));
+        if !matches!(&made, Err(why) if why.kind() == std::io::ErrorKind::AlreadyExists) {
+            break;
+        }
+    }
+    made
 }
 
 /// The target of a link, otherwise the path itself. Refuses a place that is not a file: a device or a pipe would be replaced.
@@ -53,8 +70,7 @@ fn target(link: &Path) -> std::io::Result<PathBuf> {
     })
 }
 
-fn write_to(path: &Path, head: &str, image: &Image) -> std::io::Result<()> {
-    let mut file = File::create_new(path)?;
+fn write_to(mut file: File, head: &str, image: &Image) -> std::io::Result<()> {
     file.write_all(head.as_bytes())?;
     file.write_all(image.text.as_bytes())?;
     file.write_all(format!("data {}\n", image.data.len()).as_bytes())?;
