@@ -79,6 +79,33 @@ class Lists(unittest.TestCase):
                     self.assert_grid(found := surface.read(path))
                     self.assertEqual(found.units, (unit, "N") if unit else None)
 
+    def test_lines_above_the_points_need_no_mark_in_texts_of_instruments(self):
+        x, y, z = self.columns
+        for end in (".tsv", ".asc", ".xyz"):
+            path = self.path.with_suffix(end)
+            for head, columns, unit in (("x [mm]\ty [mm]\tz [mm]", (x, y, z), "mm"), ('"Y (mm)"\t"X (mm)"\t"Height (mm)"', (y, x, z), "mm"),
+                                        ("Monday\nX(mm) Y(mm) Z(mm)", (x, y, z), "mm"), ("% z/mm y/mm x/mm", (z, y, x), "mm"), ("row\tcol\theight", (y, x, z), None),
+                                        ("// y x z", (y, x, z), None), ("40\na comment", (x, y, z), None)):
+                np.savetxt(path, np.stack(columns, axis=1), header=head, comments="", delimiter="\t")
+                with self.subTest(head, end=end):
+                    self.assert_grid(found := surface.read(path))
+                    self.assertEqual(found.units, (unit, "N") if unit else None)
+            np.savetxt(path, np.stack(self.columns, axis=1), header="x [mm]\ty [mm]\tz [um]", comments="", delimiter="\t")
+            with self.assertRaisesRegex(ValueError, "has x in mm, y in mm, z in um: convert them to one unit"):
+                surface.read(path)
+            np.savetxt(path, np.stack(self.columns, axis=1), header="x\ty\tz\nmm\tmm\tum", comments="", delimiter="\t")
+            with self.assertWarnsRegex(UserWarning, "the unit in the line 'mm\tmm\tum' is not read"):
+                surface.read(path)
+
+    def test_options_that_a_list_contradicts_are_refused(self):
+        for end in (".txt", ".xyz"):
+            path = self.path.with_suffix(end)
+            np.savetxt(path, np.stack(self.columns, axis=1))
+            with self.assertRaisesRegex(ValueError, "y rises: .* leave out top_first"):
+                surface.read(path, top_first=True)
+            with self.assertRaisesRegex(ValueError, "holds one array; give variable for files of several"):
+                surface.read(path, variable="z")
+
     def test_lists_of_numpy_are_lists_too(self):
         path = self.path.with_suffix(".npy")
         np.save(path, np.stack(self.columns, axis=1))

@@ -7,7 +7,7 @@ import re
 from typing import NamedTuple
 
 from .._units import in_metres, same_length
-from ._headers import head_of
+from ._headers import count_above, head_of
 
 # Names of columns, and what they are. The first index of an array is that of y.
 _KINDS = {"x": "x", "column": "x", "col": "x", "ix": "x", "y": "y", "row": "y", "iy": "y"}
@@ -32,6 +32,9 @@ _UNIT = re.compile(rf"(?<![^\W_])(?<!\d\s)(?!(?-i:[A-Z]\w+ [A-Z]))(?:{_SYMBOLS}|
 # A value behind a name, as in Step x [mm]: 1. Such a line is of no column.
 _VALUE = re.compile(r"[:=]\s*[-+.]?\d")
 
+# What marks a line that has no numbers.
+_MARK = re.compile(r"^\s*[#%;/!*]*")
+
 # So much of a line is quoted.
 _QUOTED = 60
 
@@ -55,7 +58,10 @@ class _Label(NamedTuple):
 
 def columns_of(path: str | os.PathLike[str], count: int) -> Columns:
     """What the lines above a list of so many columns say of them. Units that differ are refused."""
-    lines = [line[1:].strip() for line in head_of(path).split("\n") if line.startswith("#")]
+    head = head_of(path)
+    above = count_above(head)
+    told = [line for k, line in enumerate(head.splitlines()) if line.startswith("#") or k < above]
+    lines = [_MARK.sub("", line).replace('"', " ").strip() for line in told]
     words = [_words_of(line) for line in lines]
     # A line for each column.
     named = [[one for one in each if one.kind and one.unit] for each in words]
@@ -68,11 +74,11 @@ def columns_of(path: str | os.PathLike[str], count: int) -> Columns:
                 units.setdefault(one.kind, one.unit)
         if len(units) == 3:
             if not all(same_length(units["x"], other) for other in units.values()):
-                told = ", ".join(f"{name} in {unit}" for name, unit in units.items())
-                raise ValueError(f"{path} has {told}: convert them to one unit")
+                all_units = ", ".join(f"{name} in {unit}" for name, unit in units.items())
+                raise ValueError(f"{path} has {all_units}: convert them to one unit")
             kinds, unit = list(units), units["x"] if in_metres(units["x"]) else None
             return Columns(unit, _order_of(each, count), kinds.index("y") < kinds.index("x"))
-    doubt = next((line for line in lines if _UNIT.search(line)), None)
+    doubt = next((whole for whole, line in zip(told, lines) if _UNIT.search(line)), None)
     order = next((found for each in words if (found := _order_of(each, count))), None)
     # A line of x, y and z alone says their order among more columns, too.
     three = next((found for each in words if (found := _order_of(each, 3))), None)

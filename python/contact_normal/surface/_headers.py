@@ -23,6 +23,19 @@ def head_of(path: str | os.PathLike[str]) -> str:
         return decoded(file.read(_WITHIN), cut=True).replace("\r", "")
 
 
+# A number, also with a decimal comma or an exponent of Fortran, or a hole.
+_NUMBER = re.compile(r'"?(?:[-+]?[.,]?\d[\d.,]*(?:[eEdD][-+]?\d+)?|nan)"?', re.IGNORECASE)
+
+
+def count_above(head: str) -> int:
+    """The number of lines above the first line of three numbers or more; 0 if there is none."""
+    for k, line in enumerate(head.splitlines()):
+        cells = [cell for cell in re.split(r"[\s;]+", line) if cell]
+        if len(cells) >= 3 and all(_NUMBER.fullmatch(cell) for cell in cells):
+            return k
+    return 0
+
+
 def refuse_esri_grid(path: str | os.PathLike[str]) -> None:
     """Refuses a grid of a geographic information system, whose header says the size of an element and which number stands for "not measured"."""
     if re.match(r"\s*ncols\s+\d", head_of(path), re.IGNORECASE):

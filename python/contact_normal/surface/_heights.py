@@ -198,7 +198,8 @@ def heights(
     axes : {"yx", "xy"}
         The meaning of the indices of `values`: "yx": values[iy, ix]; "xy": values[ix, iy].
     top_first : bool
-        Whether the first row has the largest y, as in an image. Decreasing coordinates y have the same meaning.
+        Whether the first row has the largest y, as in an image. Decreasing coordinates y have the same meaning. Increasing ones contradict it, and are
+        refused, also in files.
     fill : float, optional
         A fill value, which means "not measured", in the unit of the array. `faults` finds unknown ones. If no element has the value, there is a warning.
     period : {"x", "y", "xy"}, optional
@@ -219,7 +220,9 @@ def heights(
         raise ValueError(f'period is {period!r}; it must be "x", "y" or "xy"')
     z = z.T if axes == "xy" else z
     (one, other), (x_falls, y_falls) = _element_sizes(z.shape, dx, dy, size, span, x, y)
-    z = z[:: -1 if flag("top_first", top_first) or y_falls else 1, :: -1 if x_falls else 1]
+    if flag("top_first", top_first) and y is not None and not y_falls:
+        raise ValueError("y rises: its first row has the smallest y; leave out top_first")
+    z = z[:: -1 if top_first or y_falls else 1, :: -1 if x_falls else 1]
     if fill is not None:
         # The value as the array holds it: in single precision -9999.9 is another number. Readers of files may have made doubles of such numbers.
         own = getattr(values, "dtype", np.dtype(float))

@@ -12,7 +12,7 @@ import numpy as np
 
 from ._columns import Columns, columns_of
 from ._given import SIZES, steps_of, with_unit
-from ._headers import head_of
+from ._headers import count_above, head_of
 from ._heights import Heights, heights
 from ._lattice import MOST_COLUMNS, Lattice, lattice_of, may_be_list
 from ._not_a_map import why
@@ -40,7 +40,7 @@ def of_list(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) ->
         raise ValueError(f"{path} has x, y and z of points, and no indices: leave out axes; where the first column is y, "
                          "exchange the columns, or name them in a header, # y x z")
     if said.doubt and not given.get("units"):
-        warnings.warn(f"{path}: the unit in the line '# {said.doubt}' is not read: x, y and z are taken to be in one unit; "
+        warnings.warn(f"{path}: the unit in the line '{said.doubt}' is not read: x, y and z are taken to be in one unit; "
                       "a line # x [mm] y [mm] z [mm] names it", stacklevel=4)
     if is_y_first:
         lattice = Lattice(np.ascontiguousarray(lattice.z.T), lattice.y, lattice.x)
@@ -48,8 +48,10 @@ def of_list(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) ->
 
 
 def of_text_list(path: str | os.PathLike[str], given: dict[str, Any]) -> Heights | None:
-    """Heights of a text that other packages read as a map, if it is a list of points of a grid."""
-    first = next((line for each in head_of(path).splitlines() if (line := each.split("#")[0].strip())), "")
+    """Heights of a text that other packages read as a map, if it is a list of points of a grid. Lines above the points need no #."""
+    head = head_of(path)
+    above = count_above(head)
+    first = next((line for each in head.splitlines()[above:] if (line := each.split("#")[0].strip())), "")
     # A map is left to them before all of it is read.
     if len(re.findall(r"[^\s;]+", first)) > MOST_COLUMNS:
         return None
@@ -57,7 +59,7 @@ def of_text_list(path: str | os.PathLike[str], given: dict[str, Any]) -> Heights
         # `has_empty_cells` has told them.
         warnings.simplefilter("ignore")
         try:
-            values = of_text(path, ".txt")
+            values = of_text(path, ".txt", above)
         except ValueError:
             return None
     return of_list(path, values, given)

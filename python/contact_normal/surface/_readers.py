@@ -126,6 +126,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     of_others = end in _TEXTS and Path(path).exists() and is_text(path)
     # SurfaceTopography would shift the columns after an empty cell.
     if of_numbers or of_others and has_empty_cells(path):
+        _refuse_variable(path, variable)
         told = header_of(path, bool(SIZES & set(given)))
         if given.get("axes") == "xy" and told.get("size"):
             # The width is that of the columns of the file, which are y then.
@@ -136,6 +137,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     if end == ".nc":
         return _of_netcdf(path, variable, given)
     if of_others and (found := of_text_list(path, given)) is not None:
+        _refuse_variable(path, variable)
         return found
     topography = of_instrument(path, end, variable, bool(SIZES & set(given)))
     if end == ".mat":
@@ -193,15 +195,21 @@ def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]
 _TEXTS = ".asc", ".xyz", ".tsv"
 
 
+def _refuse_variable(path: str | os.PathLike[str], variable: str | None) -> None:
+    """Refuses the name of an array of a file that has one array."""
+    if variable is not None:
+        raise ValueError(f"{path} holds one array; give variable for files of several")
+
+
 def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
     """The array of a file of numpy."""
     try:
         with open(path, "rb") as file:
             found = np.load(file)
-            if not isinstance(found, np.ndarray):
+            is_archive = not isinstance(found, np.ndarray)
+            if is_archive:
                 found = found[chosen(variable, list(found), path)]
-            elif variable is not None:
-                raise ValueError(f"{path} holds one array; give variable for files of several")
+            _refuse_variable(path, None if is_archive else variable)
         if not isinstance(found, np.ndarray):
             raise ValueError("it holds bytes")
         return found

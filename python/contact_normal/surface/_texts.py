@@ -16,10 +16,11 @@ from .._texts import text_of
 _BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons", "\t": "tabs"}
 
 
-def of_text(path: str | os.PathLike[str], end: str) -> Any:
+def of_text(path: str | os.PathLike[str], end: str, above: int = 0) -> Any:
     """Columns of numbers. Spaces separate the numbers of a line, in .csv files commas, or semicolons if there are any; then commas are
-    decimal points. Cells of .csv files may be quoted. Cells without a number are NaN, and so are empty cells between tabs."""
-    lines = [line.split("#")[0] for line in text_of(path).splitlines()]
+    decimal points. Cells of .csv files may be quoted. Cells without a number are NaN, and so are empty cells between tabs. So many lines
+    `above` the numbers are not read."""
+    lines = [line.split("#")[0] for line in text_of(path).splitlines()[above:]]
     tabs, lines = _between_tabs(lines), [line for line in lines if line.strip()]
     if not lines:
         raise ValueError(f"{path} has no numbers")
