@@ -14,6 +14,8 @@ use crate::memory::collected;
 pub(super) struct Had<'a> {
     friction: &'a Friction<'a>,
     kept: &'a [Particle],
+    /// Whether the coefficients kept are of particles: a step without friction leaves zeros, which stand for none.
+    has_coefficients: bool,
     grid: Grid,
     /// The weights with which a step of transient rolling moves particles.
     sweep: Option<Sweep>,
@@ -51,6 +53,9 @@ impl Had<'_> {
     fn before(&self, i: usize) -> Particle {
         let fresh = self.fresh(i);
         let mut kept = self.kept.get(i).copied().unwrap_or(fresh);
+        if !self.has_coefficients {
+            kept.coefficient = fresh.coefficient;
+        }
         // After a step without a layer.
         if kept.yield_limit == 0.0 {
             kept.yield_limit = fresh.yield_limit;
@@ -86,7 +91,8 @@ impl Solver {
             Sweep::new(&Rolling { distance: friction.distance(&grid), by })
         });
         let kept = if friction.previous == Previous::Kept { particles } else { &[] };
-        Had { friction, kept, grid, sweep }
+        let has_coefficients = kept.iter().any(|particle| particle.coefficient != 0.0);
+        Had { friction, kept, has_coefficients, grid, sweep }
     }
 
     /// The yield limits before the step of a request, whose state is not kept yet.

@@ -81,3 +81,27 @@ fn steps_with_coefficients_of_each_step_take_as_many_products_as_with_one() {
     // Changed bounds may take another iteration in some steps: less than one in six.
     assert!(own <= 1.15 * one, "{own} {one}");
 }
+
+/// A step without friction leaves particles without coefficients. In the next step they have those at rest, as without a step before.
+#[test]
+fn particles_are_fresh_after_a_step_without_friction() {
+    let wheel = Wheel::new(1);
+    let rolling = Friction { motion: Motion::TransientRolling, ..wheel.friction(0.006, 0.0, Some(RUNNING)) };
+    let solved = |steps: &[Friction<'_>]| {
+        let mut handle = solver(&wheel.grid);
+        for friction in steps {
+            let request = Request::new(&wheel.pressure, friction, 1e-8);
+            assert_eq!(handle.solve(&request, &mut |_, _| true).unwrap().0, Outcome::Converged);
+        }
+        handle.solution().unwrap().clone()
+    };
+    let frictionless = Friction { coefficient: Coefficient::Uniform(0.0), ..rolling };
+    let (after, alone) =
+        (solved(&[frictionless, Friction { previous: Previous::Kept, ..rolling }]), solved(&[rolling]));
+    let mu = |found: &Solution| found.particles.iter().map(|particle| particle.coefficient).fold(0.0, f64::max);
+    assert!(mu(&alone) > 0.3);
+    for (q, other) in after.traction.iter().zip(&alone.traction) {
+        // Two solves to a residual of 1e-8, of tractions up to .33 times 1200 N/mm^2.
+        assert!((q[0] - other[0]).hypot(q[1] - other[1]) <= 1e-4 * 400.0, "{q:?} {other:?}");
+    }
+}

@@ -4,7 +4,8 @@
 use std::f64::consts::PI;
 
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Each, Layer, Load, Patches, Period, Scene};
+use contact_normal::influence::{HalfSpace, Kernel, Table};
+use contact_normal::scene::{Bodies, Coating, Each, Layer, Load, Patches, Period, Scene};
 use contact_normal::solver::{solve, Options, Report};
 
 /// E* = 1.
@@ -210,5 +211,49 @@ fn errors_near_full_contact_of_two_periods_are_numbers_or_unknown() {
                 assert!(value.is_none_or(|value| value >= 0.0), "{load:?}, layer {layer:?}: {error:?}");
             }
         }
+    }
+}
+
+/// Where an element gives way more than a half-space, the rim has no bias, and the error of the corrected area is the whole correction: below a layer, a thin
+/// coating that stands for this layer, and a table of coefficients with its compliance on the diagonal.
+#[test]
+fn corrected_areas_of_compliant_elements_have_the_error_of_the_correction() {
+    let (thickness, modulus, ratio) = (0.01, 0.005, 0.3);
+    let compliance = thickness * (1.0 - 2.0 * ratio) / (2.0 * modulus * (1.0 - ratio));
+    let error_of = |kind: &str, m: usize, centre: [f64; 2]| {
+        let grid = Grid::new(m, m, 1.0 / m as f64, 1.0 / m as f64).expect("a grid");
+        let place = |k: usize| (k as f64 + 0.5) * grid.dx - 0.5;
+        let distance = |i: usize| 0.3 * (place(i % m) - centre[0]).powi(2) + 0.4 * (place(i / m) - centre[1]).powi(2);
+        let h: Vec<f64> = (0..m * m).map(distance).collect();
+        let half_space = HalfSpace::new(grid.dx, grid.dy, UNIT.compliance());
+        let own = |k: usize| {
+            let (kx, ky) = ((k % (2 * m)) as i64 - m as i64, (k / (2 * m)) as i64 - m as i64);
+            half_space.at(kx, ky) + if (kx, ky) == (0, 0) { compliance } else { 0.0 }
+        };
+        let table: Vec<f64> = (0..4 * m * m).map(own).collect();
+        let scene = Scene {
+            layer: (kind == "layer").then_some(Layer(Each::Uniform(compliance))),
+            coating: (kind == "coating").then_some(Coating::of_body_1(thickness, modulus, ratio)),
+            influence: (kind == "table").then(|| Table::new(m, m, &table, &grid).expect("a table")),
+            ..Scene::new(grid, &h, UNIT, Load::Approach(0.02))
+        };
+        let report = report(&scene);
+        (report.measures.corrected_area, report.error.corrected_area.expect("an estimate"))
+    };
+    for kind in ["plain", "layer", "coating", "table"] {
+        let (mut sum, mut above) = (0.0, 0);
+        let centres = [[0.0, 0.0], [0.013, -0.008], [-0.021, 0.017], [0.005, 0.03], [-0.011, -0.027], [0.029, 0.002]];
+        for centre in centres {
+            let (exact, _) = error_of(kind, 256, centre);
+            for m in [32, 48] {
+                let (area, error) = error_of(kind, m, centre);
+                let ratio = (area - exact).abs() / error;
+                sum += ratio;
+                above += usize::from(ratio > 1.0);
+            }
+        }
+        println!("{kind}: mean {:.2}, above 1: {above} of 12", sum / 12.0);
+        // The estimate is a deviation, not a bound: a tenth of 240 areas exceeds it. Before this error it was the half.
+        assert!(sum / 12.0 <= 0.8 && above <= 2, "{kind}: {sum} {above}");
     }
 }

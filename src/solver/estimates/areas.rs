@@ -1,6 +1,8 @@
 //! The errors of contact areas along their outlines, and of the corrected area.
 
 use crate::contact::{Outline, Problem, State};
+use crate::grid::Grid;
+use crate::influence::{HalfSpace, Kernel};
 
 /// Error of the corrected area, over the correction, and in elements along straight outlines and edges.
 const CORRECTION_OFF: f64 = 0.3;
@@ -14,16 +16,39 @@ pub fn outline_off(problem: &Problem, outline: &Outline) -> f64 {
     STRAIGHT_OFF * straight + edges_off(problem, outline) + curved.sqrt()
 }
 
-/// The error of the corrected area over the correction. Below a layer that gives way more than an element pressures fall linearly at the rim, where counting has no
-/// bias, and the whole correction is an error.
+/// The error of the corrected area over the correction. Where an element gives way more under its own pressure than a half-space does, as with a layer or a thin
+/// coating, pressures fall linearly at the rim. Counting has no bias there, and the whole correction is an error.
 pub fn correction_off(problem: &Problem, state: &State) -> f64 {
-    if !problem.coefficients.has_layer() {
-        return CORRECTION_OFF;
-    }
     let in_contact = (0..state.p.len()).filter(|&i| state.contact[i]);
-    let compliance = in_contact.map(|i| problem.layer(i)).fold(0.0, f64::max);
-    let by_element = compliance * problem.modulus() / f64::min(state.grid.dx, state.grid.dy);
-    CORRECTION_OFF + (1.0 - CORRECTION_OFF) * by_element / (1.0 + by_element)
+    let layer = in_contact.map(|i| problem.layer(i)).fold(0.0, f64::max);
+    let (compliance, modulus) = beyond_half_space(problem);
+    let by_element = (layer + compliance) * modulus / f64::min(state.grid.dx, state.grid.dy);
+    if by_element.is_finite() {
+        CORRECTION_OFF + (1.0 - CORRECTION_OFF) * by_element / (1.0 + by_element)
+    } else {
+        1.0
+    }
+}
+
+/// The compliance of an element beyond that of a half-space with the same coefficients at other elements, and E* of this half-space, which is infinite if these
+/// coefficients do not fall. Differences of coefficients have no constant part.
+fn beyond_half_space(problem: &Problem) -> (f64, f64) {
+    let Grid { mx, my, dx, dy, .. } = problem.grid;
+    if mx.max(my) <= 2 {
+        return (0.0, problem.modulus());
+    }
+    let differences = |kernel: &dyn Kernel| {
+        let [own, one, two] = [0, 1, 2].map(|k| if mx >= my { kernel.at(k, 0) } else { kernel.at(0, k) });
+        [own - one, one - two]
+    };
+    let unit = HalfSpace::new(dx, dy, 1.0);
+    let ([own, next], [unit_own, unit_next]) = (differences(problem.coefficients.kernel()), differences(&unit));
+    let compliance = next / unit_next;
+    if compliance > 0.0 {
+        ((own - compliance * unit_own).max(0.0), problem.grid.modulus(compliance * unit.at(0, 0)))
+    } else {
+        (0.0, f64::INFINITY)
+    }
 }
 
 /// The error of the contact area along straight ends of the surface, in elements: half of these if all ends are straight. A circle has four short
