@@ -3,7 +3,9 @@
 
 use contact_normal::friction::{Report, Solution, PLASTIC, SLIP, STICK};
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Coefficient, Friction, Motion, PlasticLayer, Prescribed, Previous};
+use contact_normal::scene::{
+    Branch, Coefficient, Fall, Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous,
+};
 
 use super::laws::{pressures, solver, steel};
 use super::support::run;
@@ -177,4 +179,37 @@ fn one_element_on_a_layer_that_hardens_or_softens_is_that_of_contact() {
         }
     }
     assert_eq!(steps, 57);
+}
+
+/// One element below a pressure of 350, with a coefficient that falls from .3 and a layer that yields at 70 and softens. Yielding begins at rest, and the layer
+/// goes on softening where friction falls below 70. So the traction never rises with the shift.
+#[test]
+fn a_layer_softens_where_friction_falls_below_its_limit() {
+    let grid = Grid::new(1, 1, 0.25, 0.25).unwrap();
+    let law = FrictionLaw { time_step: 0.25e-3, ..FrictionLaw::new(Fall::Exponential, (0.5, 0.5), 10.0, 1000.0) };
+    let layer = PlasticLayer { yield_limit: 70.0, hardening: -2e4 };
+    for branch in [Branch::Near, Branch::Low, Branch::High] {
+        let mut before = 70.0;
+        for step in 1..=60 {
+            let shift = 1e-4 * f64::from(step);
+            let friction = Friction {
+                prescribed: along(-shift),
+                law: Some(law),
+                layer: Some(layer),
+                branch,
+                ..Friction::new(0.3)
+            };
+            let (report, solution) = run(&mut solver(&grid), &[350.0], &friction, 1e-8);
+            let [x, y] = solution.traction[0];
+            let traction = x.hypot(y);
+            assert!(report.law_slope < 1.0, "{}", report.law_slope);
+            // Before the layer yields the element sticks, and the traction grows.
+            if shift > 70.0 * steel(&grid).at(0.0, 0.0)[0] {
+                assert!(traction <= before * (1.0 + 1e-6), "{branch:?} {shift}: {traction} after {before}");
+                before = traction;
+            }
+        }
+        // The least limit of a layer that softens is a thousandth of that of fresh material.
+        assert!((before - 0.07).abs() <= 1e-6, "{branch:?}: {before}");
+    }
 }

@@ -62,9 +62,8 @@ pub struct Resolved {
 }
 
 impl Law {
-    /// The response at a slip, from the particle's state `had` before the step.
-    pub fn at(&self, slip: f64, place: Place, had: Particle) -> Response {
-        let Place { pressure, coefficient } = place;
+    /// The coefficient of friction at a slip, and its derivatives.
+    fn coefficient(&self, slip: f64, coefficient: f64, had: Particle) -> (f64, Slope) {
         let (mut mu, mut of_mu) = (coefficient, [0.0; 3]);
         if let Some(law) = &self.fall {
             let v = slip * self.rate;
@@ -84,6 +83,13 @@ impl Law {
         if mu < LEAST_COEFFICIENT * coefficient {
             (mu, of_mu) = (LEAST_COEFFICIENT * coefficient, [0.0; 3]);
         }
+        (mu, of_mu)
+    }
+
+    /// The response at a slip, from the particle's state `had` before the step.
+    pub fn at(&self, slip: f64, place: Place, had: Particle) -> Response {
+        let Place { pressure, coefficient } = place;
+        let (mu, of_mu) = self.coefficient(slip, coefficient, had);
         let (cap, of_cap) = (pressure * mu, of_mu.map(|slope| pressure * slope));
         let limit = had.yield_limit;
         let kept = [0.0, 0.0, 1.0];
@@ -94,7 +100,10 @@ impl Law {
             slopes: [of_mu, of_limit],
             yields: false,
         };
-        let Some(layer) = self.layer.filter(|_| limit < cap) else { return by_friction(limit, kept) };
+        // A layer that softens goes on yielding where friction falls below the limit from which it has softened.
+        let at_rest = || pressure * self.coefficient(0.0, coefficient, had).0;
+        let yields_first = |layer: &PlasticLayer| limit < cap || layer.hardening < 0.0 && limit < at_rest();
+        let Some(layer) = self.layer.filter(yields_first) else { return by_friction(limit, kept) };
         let least = LEAST_YIELD_LIMIT * layer.yield_limit;
         let (hardened, of_hardened) = match limit + layer.hardening * slip {
             value if value < least.min(limit) => (least.min(limit), if limit < least { kept } else { [0.0; 3] }),
