@@ -6,6 +6,7 @@ use super::iterate::iterate;
 use super::nested::FullMultigrid;
 use super::options::Options;
 use super::stages::{share, Stage};
+use super::take_over::{must_reach_limits, put_at_limits};
 use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State, Survey, UNDECIDED_SHARE};
 use crate::error::{Error, Result};
 use crate::methods::direct::Direct;
@@ -160,7 +161,8 @@ impl Methods {
             log::info!("no further progress on this scene: {stage:?} takes over");
             self.best.restore(task)?;
             let worthless = !(task.survey().violation(task.set) <= LARGEST_USEFUL);
-            if worthless && !S::FIXED && stage == Stage::Norm {
+            let has_lost_limits = must_reach_limits(task.problem, task.state, task.set) && !task.state.has_limited();
+            if worthless && !S::FIXED && stage == Stage::Norm || has_lost_limits {
                 self.start(stage, task, Start::Nothing, 0.0)?;
             }
         }
@@ -175,6 +177,11 @@ impl Methods {
         from: Start,
         error_ratio: f64,
     ) -> Result<Beginning> {
+        if must_reach_limits(task.problem, task.state, task.set) {
+            put_at_limits(task.problem, task.state, task.set)?;
+            task.count_products();
+            return Ok(if is_solved(task, task.survey()) { Beginning::Solved } else { Beginning::GoOn });
+        }
         let (self_influence, threads) = (task.problem.self_influence(), &task.problem.threads);
         match stage {
             Stage::Direct | Stage::ProjectedCg if !S::FIXED => {
@@ -195,9 +202,7 @@ impl Methods {
                 }
             }
             // By force, NORM finds no way from p = 0 to the elements that end at their limit.
-            Stage::Norm
-                if S::LIMITED && !S::FIXED && !task.problem.symmetric && matches!(task.state.load, Load::Force(_)) =>
-            {
+            Stage::Norm if S::LIMITED && !S::FIXED && matches!(task.state.load, Load::Force(_)) => {
                 task.state.unload();
                 if task.state.start_on_bearing_area(task.set, (self_influence, f64::INFINITY), threads).is_none() {
                     task.state.start(self_influence);

@@ -106,23 +106,9 @@ impl Solver {
         } else {
             methods.solve(&mut task, (from, survey), stages, options.error_ratio)?
         };
-        let outcome = match outcome {
-            Outcome::Stagnated | Outcome::IterationLimit => look_at_full_limits(&mut task)?.unwrap_or(outcome),
-            outcome => outcome,
-        };
         let outcome = if task.monitor.is_cancelled() { Outcome::Cancelled } else { outcome };
         *has_result = true;
         task.monitor.close_grid(task.state);
         Ok((outcome, task.goal.tolerance))
     }
-}
-
-/// If no iteration converges, tests p at its limit everywhere.
-fn look_at_full_limits<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<Option<Outcome>> {
-    let found = take_over::full_at_limits(task.problem, task.state, task.set, &task.goal)?;
-    task.count_products();
-    Ok(found.map(|survey| {
-        task.monitor.survey = Some(survey);
-        Outcome::Converged
-    }))
 }

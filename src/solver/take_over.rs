@@ -7,9 +7,9 @@ use crate::blocks;
 use crate::contact::{leave, AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::Result;
 use crate::methods::Start;
-use crate::progress::{Goal, Monitor};
+use crate::progress::Monitor;
 use crate::scene::Load;
-use crate::sums::ROUND_OFF;
+use crate::sums::{mean, ROUND_OFF};
 use crate::threads::Threads;
 
 /// Residual of a guess, relative to `h - approach` over C, above which it is discarded; p = 0 has 1.
@@ -195,33 +195,16 @@ pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, 
     Ok(true)
 }
 
-/// By approach, with two periods: puts all p at their limits and returns the survey, if that solves the problem. A uniform p displaces
-/// nothing: the energy is linear along it, so that no search direction leads there.
-pub fn full_at_limits<S: AdmissibleSet>(
-    problem: &mut Problem,
-    state: &mut State,
-    set: S,
-    goal: &Goal,
-) -> Result<Option<Survey>> {
-    let is_candidate = S::LIMITED
-        && matches!(state.load, Load::Approach(_))
-        && problem.coefficients.is_mean_free()
-        && (0..state.p.len()).all(|i| set.limit(i) < f64::INFINITY || state.h[i].is_infinite());
-    if !is_candidate {
-        return Ok(None);
-    }
-    let before = state.copy(&problem.threads)?;
-    put_at_limits(problem, state, set)?;
-    let survey = Survey::by(state, &problem.threads);
-    if goal.holds(&survey, 0.0, set) {
-        return Ok(Some(survey));
-    }
-    *state = before;
-    Ok(None)
+/// Whether the approach is the mean of h or more, with two periods. A uniform p displaces nothing, so that the mean of e is negative with any p, and elements
+/// reach their limits.
+pub fn must_reach_limits<S: AdmissibleSet>(problem: &Problem, state: &State, set: S) -> bool {
+    let Load::Approach(approach) = state.load else { return false };
+    let are_finite = || (0..state.p.len()).all(|i| set.limit(i) < f64::INFINITY || state.h[i].is_infinite());
+    S::LIMITED && problem.coefficients.is_mean_free() && approach >= mean(&state.h) && are_finite()
 }
 
 /// Puts all elements with a surface at their limit.
-fn put_at_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<()> {
+pub fn put_at_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<()> {
     for i in 0..state.p.len() {
         let at_limit = state.h[i].is_finite();
         (state.p[i], state.contact[i], state.at_limit[i]) =

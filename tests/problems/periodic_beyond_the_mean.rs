@@ -104,3 +104,36 @@ fn limits_give_way_beyond_the_mean() {
     let none = Scene { pressure_limit: Some(PressureLimit(Each::Uniform(f64::INFINITY))), ..scene(&h, 0.1) };
     assert!(matches!(solve(&none, &Options::default()), Err(Error::Infeasible(_))));
 }
+
+/// Balls with noise at approaches slightly above the mean, below limits of 10 to 1e4 times the pressures that flatten them: some elements reach their limits,
+/// though full contact without limits is near.
+#[test]
+fn high_limits_are_reached_slightly_beyond_the_mean() {
+    let options = Options::default();
+    let mut most = 0.0_f64;
+    for m in [8, 16, 24, 32] {
+        let noise = rough(m, 7, 5);
+        let place = |k: usize| (k as f64 - 0.5 * (m as f64 - 1.0)) / m as f64;
+        let ball = |k: usize| 0.4 * m as f64 * (place(k % m).powi(2) + place(k / m).powi(2)) + 1e-3 * noise[k];
+        let h: Vec<f64> = (0..m * m).map(ball).collect();
+        let mean = h.iter().sum::<f64>() / h.len() as f64;
+        let deviation = (h.iter().map(|h| (h - mean).powi(2)).sum::<f64>() / h.len() as f64).sqrt();
+        let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
+        let bodies = Bodies { shear_modulus: [0.5, f64::INFINITY], poisson_ratio: [0.0; 2] };
+        let period = Some(Period { x: true, y: true });
+        for (above, limit) in
+            [(0.003, 1e3), (0.02, 7e3), (0.034, 2.9e3), (0.07, 200.0), (0.09, 19.0), (0.16, 7e3), (0.5, 50.0)]
+        {
+            let limit = PressureLimit(Each::Uniform(limit * deviation / m as f64));
+            let load = Load::Approach(mean + above * deviation);
+            let scene = Scene { period, pressure_limit: Some(limit), ..Scene::new(grid, &h, bodies, load) };
+            let (solver, stop, report) = solve(&scene, &options).unwrap();
+            let count = solver.state().at_limit.iter().filter(|is| **is).count();
+            assert!(stop == Outcome::Converged && count > 0, "{m} {above} {limit:?}: {stop:?}, {count} at the limit");
+            most = most.max(report.count.work_units);
+        }
+    }
+    println!("at most {most} products");
+    // Twice the most of these scenes.
+    assert!(most <= 300.0, "{most}");
+}
