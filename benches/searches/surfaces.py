@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import contact_normal
 import numpy as np
 
 Random = np.random.Generator
@@ -26,48 +27,26 @@ class Surface:
     def distance(self, doublings: int) -> np.ndarray:
         """The undeformed distance on the grid with so many doublings."""
         if not callable(self.h):
-            return refined(self.h, 2**doublings)
+            return self.refined(doublings)
         my, mx = (m << doublings for m in self.shape)
         x = (np.arange(mx) + 0.5 - 0.5 * mx) * (self.size[0] / mx)
         y = (np.arange(my) + 0.5 - 0.5 * my) * (self.size[1] / my)
         return np.broadcast_to(self.h(x[None, :], y[:, None]), (my, mx)).astype(float)
 
+    def refined(self, doublings: int) -> np.ndarray:
+        """The array as the library refines it: the surface of the last grid of a search whose target no grid meets."""
+        if doublings == 0:
+            return self.h
+        found = contact_normal.solve_to_accuracy(
+            self.h, **self.element(0), e_star=1.0, approach=self.approach, target=1e-9, tolerance=1e-2, max_elements=self.h.size * 4**doublings
+        )
+        fine = found.deformed_distance - found.displacement + found.approach
+        assert fine.shape == tuple(m << doublings for m in self.h.shape), found.message
+        return fine
+
     def element(self, doublings: int) -> dict[str, float]:
         """Element sizes of that grid."""
         return {"dx": self.size[0] / (self.shape[1] << doublings), "dy": self.size[1] / (self.shape[0] << doublings)}
-
-
-def refined(h: np.ndarray, parts: int) -> np.ndarray:
-    """As the library refines arrays: by cubics through the four nearest centres; at holes by lines."""
-    return h if parts == 1 else _along(_along(h, parts).T, parts).T
-
-
-def _along(h: np.ndarray, parts: int) -> np.ndarray:
-    """The same along rows."""
-    m, fine = h.shape[1], np.empty((h.shape[0], h.shape[1] * parts))
-    i = np.arange(m)
-    for part in range(parts):
-        t = (part + 0.5) / parts - 0.5
-        first = np.clip(i + (-2 if t < 0 else -1), 0, m - 4)
-        at, nodes = i + t - first, [h[:, first + k] for k in range(4)]
-        value = np.zeros_like(h)
-        with np.errstate(invalid="ignore"):
-            for k in range(4):
-                others = [n for n in range(4) if n != k]
-                value = value + np.prod([(at - n) / (k - n) for n in others], axis=0) * nodes[k]
-        holed = np.any([np.isinf(node) for node in nodes], axis=0)
-        fine[:, part::parts] = np.where(holed, _beside_holes(h, t), value)
-    return fine
-
-
-def _beside_holes(h: np.ndarray, t: float) -> np.ndarray:
-    """The line through an element and its neighbour with a surface, on the side of the part if there is one."""
-    none = np.full((h.shape[0], 1), np.inf)
-    left, right = np.hstack([none, h[:, :-1]]), np.hstack([h[:, 1:], none])
-    there, behind = (left, right) if t < 0 else (right, left)
-    with np.errstate(invalid="ignore"):
-        line = np.where(np.isfinite(there), h + abs(t) * (there - h), np.where(np.isfinite(behind), h + abs(t) * (h - behind), h))
-    return np.where(np.isinf(h), np.inf, line)
 
 
 def _turned(random: Random, reach: float = 0.06) -> Callable[[Any, Any], tuple[Any, Any]]:
