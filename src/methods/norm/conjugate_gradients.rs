@@ -7,7 +7,7 @@
 //! ```
 
 use super::Workspace;
-use crate::contact::{norm_of_distance, relative, State, OF_PRODUCT};
+use crate::contact::{norm_of_distance, relative, State, PRODUCT_ROUND_OFF};
 use crate::error::{Error, Result};
 use crate::methods::Task;
 use crate::scene::Load;
@@ -104,5 +104,5 @@ fn project(values: &mut [f64], contact: &[bool], count: Option<f64>) {
 /// The round-off of a residual on `elements` with displacement `u`: a smaller residual is noise, and so is its curvature.
 pub(super) fn noise(state: &State, elements: impl Iterator<Item = usize>, u: &[f64]) -> f64 {
     let terms = |i: usize| (state.approach - state.h[i]).abs() + u[i].abs();
-    OF_PRODUCT * elements.map(|i| terms(i) * terms(i)).sum::<f64>().sqrt()
+    PRODUCT_ROUND_OFF * elements.map(|i| terms(i) * terms(i)).sum::<f64>().sqrt()
 }

@@ -105,7 +105,7 @@ impl Norm {
             truncate(state, set, &task.problem.threads);
             return Ok(true);
         }
-        self.before.keep(state);
+        self.before.copy_from(state);
         self.u_before.clone_from(&state.u);
         truncate(state, set, &task.problem.threads);
         task.problem.refresh(task.state, task.set)?;
@@ -115,7 +115,7 @@ impl Norm {
 
     /// Exchanges one element: the last violator.
     fn exchange_one<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
-        self.before.give_back(state);
+        self.before.restore_to(state);
         state.u.copy_from_slice(&self.u_before);
         if let Some(i) = (0..state.p.len()).rfind(|&i| violates(state, set, i)) {
             let at_limit = S::LIMITED && state.at_limit[i];
