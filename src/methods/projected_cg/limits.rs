@@ -111,7 +111,7 @@ impl<T: Real> Iteration<T> {
     }
 
     /// Clips the step of elements that the forecast step would take beyond their limit.
-    pub(super) fn hold_at_limit<S: AdmissibleSet>(&mut self, state: &State, set: S, forecast: f64) {
+    pub(super) fn clip_at_limit<S: AdmissibleSet>(&mut self, state: &State, set: S, forecast: f64) {
         let [] = self.segments.sum_changing(&state.contact, &mut self.t, |block, t| {
             for (elements, local) in block.segments() {
                 let (p, t) = (&state.p[elements.clone()], &mut t[local]);
