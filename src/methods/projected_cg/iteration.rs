@@ -265,7 +265,7 @@ impl<T: Real> Iteration<T> {
     }
 
     /// The step length alpha. In the first step, and while elements are at their limit, alpha is the forecast if the product includes a large
-    /// correction: all of the correction is then right.
+    /// correction: u then gets the whole correction.
     fn step_length(&self, step: &StepSums, search: &mut Search, limited: bool) -> f64 {
         let alpha = step.rt / step.tq;
         search.tq = step.tq;
