@@ -61,9 +61,8 @@ impl<T: Real> Operator<T> {
     }
 }
 
-/// The inverse treats a uniform pressure like a wave with this part of the smallest wave number: it represents all waves longer than the period. The value comes from
-/// measurements.
-/// value is the best of several that were measured.
+/// The inverse treats a uniform pressure like a wave with this part of the smallest wave number: it represents all waves longer than the period. The
+/// value comes from measurements.
 const MEAN_WAVE: f64 = 0.45;
 
 /// The displacement by the wave of pressure with bin `(x, y)`, relative to the pressure.
