@@ -279,7 +279,7 @@ impl<T: Real> Iteration<T> {
 }
 
 impl Cycle {
-    /// Whether the goal's criterion holds, or the residual is at most `floor`.
+    /// Whether the criterion of the goal holds. A residual of at most `floor` satisfies any tolerance of the residual.
     fn meets(&self, goal: &Goal, floor: f64) -> bool {
         if goal.by_update() {
             self.update <= goal.tolerance * self.pressure
