@@ -6,7 +6,7 @@
 //! - The products `A z_j` are kept, so that the product A x costs no further one.
 //! - If M is the same linear map for all j, the z_j need not be kept: `x = M sum_j y_j v_j`.
 //! - With many vectors the products need not be kept either, because A x takes one product only. Then each v_j takes a third of the memory
-//! ([`Kept`]).
+//!   ([`Kept`]).
 //!
 //! Vectors and their products are stored in the precision T, double by default. Sums and borders are always double. x and A x are consistent to the
 //! precision T. This error is relative to x, which is a Newton step and becomes small.

@@ -192,8 +192,7 @@ fn share<T: Real>(near: u16, absent: T) -> T {
 /// - `value` maps a value of the grid to its term in the sums.
 /// - `wanted(row, chunk)` tells whether the sums of a chunk are needed. Rows are counted from the first of `rows`.
 /// - `take(row, chunk, elements, sums)` receives the sums of a chunk. `elements` are those of the chunk, counted from the first element of `rows`. If
-/// the
-///   chunk has fewer than [`CHUNK`] elements, the last sums are not valid.
+///   the chunk has fewer than [`CHUNK`] elements, the last sums are not valid.
 #[inline(always)]
 fn box_sums<A: Copy, B: Summand>(
     (from, mx): (&[A], usize),

@@ -16,11 +16,9 @@
 //!
 //! - With a prescribed force, p is scaled to carry the force.
 //! - With a prescribed approach, p is scaled to the least energy (module `energy`), or moves along a deflation direction: the last change in time
-//! (module
-//!   `along`), or a uniform pressure where few elements carry much of the force (module `uniform`).
+//!   (module `along`), or a uniform pressure where few elements carry much of the force (module `uniform`).
 //! - With a prescribed approach, directions carry force in three cases only: on a given C, after an element has reached its limit, or while p = 0
-//! cannot
-//!   be scaled.
+//!   cannot be scaled.
 //!
 //! The reason is that a residual which is uniform over C is the displacement by the pressure of a flat punch on C. M approximates this pressure
 //! poorly, and p itself approximates it better. Measured products to 1e-6 with a prescribed approach, with directions that carry force and without:

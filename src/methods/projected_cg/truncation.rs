@@ -1,11 +1,11 @@
 //! Truncation of pressures without an extra product. Step (4.1) changes p by d on the elements that leave C, and then u lacks `A d`. An extra product
 //! would correct u, but it costs half an iteration. Two measures avoid the extra product:
 //!
-//! - All eigenvalues of M A on C are at least 1 and few exceed 4, so alpha can be forecast to within some ten percent. Elements that the
-//!   forecast step would truncate are clipped before the product. Then d is only due to the error of the forecast alpha'.
-//! - If d is small compared with the step, the correction of u is deferred. The next direction is `t + d/alpha'`, so that its product contains
-//!   `A d`. If alpha differs from alpha', the rest `d (1 - alpha/alpha')` remains to be corrected, and the rest shrinks by this factor at each
-//!   iteration. At the end the fresh product of the certificate corrects what remains.
+//! - All eigenvalues of M A on C are at least 1 and few exceed 4, so alpha can be forecast to within some ten percent. Elements that the forecast
+//!   step would truncate are clipped before the product. Then d is only due to the error of the forecast alpha'.
+//! - If d is small compared with the step, the correction of u is deferred. The next direction is `t + d/alpha'`, so that its product contains `A d`.
+//!   If alpha differs from alpha', the rest `d (1 - alpha/alpha')` remains to be corrected, and the rest shrinks by this factor at each iteration. At
+//!   the end the fresh product of the certificate corrects what remains.
 
 use super::step_sums::StepSums;
 use crate::contact::State;

@@ -3,8 +3,7 @@
 //! Search directions carry no force, and p is scaled to the least energy (module `energy`). Scaling fails in two kinds of scenes:
 //!
 //! - One element carries much of the force, like a grain of dust or a spike in data of an interferometer. Scaling then fits the depth of that
-//! element, and
-//!   a hundredth of this depth exceeds the roughness of all other elements.
+//!   element, and a hundredth of this depth exceeds the roughness of all other elements.
 //! - The scene has two periods and is near full contact. The mean of p displaces nothing, so the least energy does not determine the mean.
 //!
 //! In these scenes p is not scaled. In each step p moves along d, as along a change of the last step (module `deflation`):

@@ -9,8 +9,7 @@
 //!
 //! - The changes of each finished row are transformed in x once, and their effect on later rows is summed in transformed space.
 //! - Within strips of 16 rows the effects are summed directly. In larger blocks the effect of the first half of the rows on the second half is a
-//! product
-//!   by FFT in y (divide and conquer).
+//!   product by FFT in y (divide and conquer).
 //! - Only the part within the current row is sequential.
 //!
 //! The iterates equal those of the direct sweep to round-off. The cost is O(n log^2 n), plus mx^2 my operations within the rows if the rows are not
