@@ -1,67 +1,70 @@
-//! The exact Hertz solution: two smooth bodies, `h = A x^2 + B y^2 - approach` on half-spaces whose compliances add up
-//! to `1/E*`.
+//! The exact Hertz solution for two smooth bodies with the distance `A x^2 + B y^2 - approach` before deformation. The bodies are half-spaces whose
+//! compliances add up to `1/E*`.
 //!
-//! Contact is an ellipse with semi-axes `a`, `b` and pressures `p0 sqrt(1 - (x/a)^2 - (y/b)^2)` (Johnson, Contact
-//! Mechanics, section 4.2). With the shorter semi-axis in the direction of the larger curvature, `k = b/a < 1` say, `e^2 = 1 - k^2`
-//! and the complete elliptic integrals K(e), E(e):
+//! The contact area is an ellipse with the semi-axes `a`, `b`, and the pressure is `p0 sqrt(1 - (x/a)^2 - (y/b)^2)` (Johnson, Contact Mechanics,
+//! section 4.2). The shorter semi-axis b lies in the direction of the larger curvature B. Let `k = b/a` and `e^2 = 1 - k^2`, and let K and E be the
+//! complete elliptic integrals of the modulus e. Then the displacement at the centre and the curvatures are
 //!
 //! ```text
-//! u(0) = p0 b K / E*,    A = (p0 b / E* e^2 a^2) (K - E),    B = (p0 b / E* e^2 a^2) (E / k^2 - K)
+//! u(0) = p0 b K / E*,    A = p0 b (K - E) / (E* e^2 a^2),    B = p0 b (E / k^2 - K) / (E* e^2 a^2)
 //! ```
 //!
-//! so `B/A` fixes k, then `approach = u(0)` fixes `a^2 = approach (K - E) / (A e^2 K)`, and `F = (2/3) pi a b p0`.
+//! The ratio `B/A` determines k. Then `approach = u(0)` determines `a^2 = approach (K - E) / (A e^2 K)`, and the force is `F = (2/3) pi a b p0`.
 
 use std::f64::consts::PI;
 
 use crate::bisection::bisect;
 use crate::error::{invalid, positive, Number, Result};
 
-/// The exact solution.
+/// The exact solution of a Hertz contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hertz {
-    /// Semi-axis of the contact ellipse in x.
+    /// The semi-axis of the contact ellipse in x.
     pub semi_axis_x: f64,
-    /// Semi-axis in y.
+    /// The semi-axis of the contact ellipse in y.
     pub semi_axis_y: f64,
-    /// Pressure at the centre.
+    /// The pressure p0 at the centre.
     pub max_pressure: f64,
-    /// Approach of the bodies.
+    /// The approach of the bodies.
     pub approach: f64,
-    /// Normal force.
+    /// The normal force F.
     pub force: f64,
-    /// Area of the contact ellipse.
+    /// The area of the contact ellipse.
     pub area: f64,
 }
 
-/// Hertz contact for `h = curvature_x x^2 + curvature_y y^2 - approach`; `compliance` is `1/E*`.
+/// Computes the Hertz contact of bodies with the undeformed distance `curvature_x x^2 + curvature_y y^2` for a prescribed approach. `compliance` is
+/// `1/E*`.
 pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64) -> Result<Hertz> {
     check(curvature_x, curvature_y, ("approach", approach), compliance)?;
-    let found = ellipse(curvature_x, curvature_y, approach, compliance);
-    found.map_or_else(|| out_of_range(curvature_x, curvature_y, ("approach", approach)), Ok)
+    let contact = ellipse(curvature_x, curvature_y, approach, compliance);
+    contact.map_or_else(|| out_of_range(curvature_x, curvature_y, ("approach", approach)), Ok)
 }
 
-/// Hertz contact for a prescribed force `F`, which is proportional to the approach to the power 3/2.
+/// Computes the Hertz contact for a prescribed force F, which is proportional to the approach to the power 3/2.
 pub fn hertz_by_force(curvature_x: f64, curvature_y: f64, force: f64, compliance: f64) -> Result<Hertz> {
     check(curvature_x, curvature_y, ("force", force), compliance)?;
     let unit = ellipse(curvature_x, curvature_y, 1.0, compliance);
     let by_force = |unit: Hertz| (force / unit.force).powf(2.0 / 3.0);
-    let found = unit.and_then(|unit| ellipse(curvature_x, curvature_y, by_force(unit), compliance));
-    found.map_or_else(|| out_of_range(curvature_x, curvature_y, ("force", force)), Ok)
+    let contact = unit.and_then(|unit| ellipse(curvature_x, curvature_y, by_force(unit), compliance));
+    contact.map_or_else(|| out_of_range(curvature_x, curvature_y, ("force", force)), Ok)
 }
 
+/// Refuses inputs that are not positive.
 fn check(curvature_x: f64, curvature_y: f64, load: (&str, f64), compliance: f64) -> Result<()> {
     let named = [("curvature_x", curvature_x), ("curvature_y", curvature_y), load, ("1/E*", compliance)];
     named.into_iter().try_for_each(|(name, value)| positive(name, value))
 }
 
+/// The error of a contact whose size, pressure or force is not a positive finite number.
 fn out_of_range(curvature_x: f64, curvature_y: f64, (name, load): (&str, f64)) -> Result<Hertz> {
     let [x, y, load] = [curvature_x, curvature_y, load].map(Number);
     invalid(format!("curvature_x {x}, curvature_y {y} and {name} {load} give a contact out of range"))
 }
 
-/// The ellipse; none if it is out of range.
+/// Computes the contact; None if its size, pressure or force is not a positive finite number.
 fn ellipse(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64) -> Option<Hertz> {
-    // The long axis lies along the smaller curvature.
+    // The long semi-axis lies in the direction of the smaller curvature.
     let (small, large) = (curvature_x.min(curvature_y), curvature_x.max(curvature_y));
     let shape = Shape::of(large / small);
     let long = (approach / (small * shape.approach_ratio)).sqrt();
@@ -71,23 +74,24 @@ fn ellipse(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64) -
     let area = PI * long * short;
     let exact =
         Hertz { semi_axis_x, semi_axis_y, max_pressure, approach, force: 2.0 / 3.0 * area * max_pressure, area };
-    let found = [long, short, area, max_pressure, exact.force];
-    found.iter().all(|value| *value > 0.0 && value.is_finite()).then_some(exact)
+    let values = [long, short, area, max_pressure, exact.force];
+    values.iter().all(|value| *value > 0.0 && value.is_finite()).then_some(exact)
 }
 
-/// The ellipse of a ratio of curvatures.
+/// The shape of the contact ellipse, which depends on the ratio of the curvatures only.
 struct Shape {
-    /// Short over long semi-axis.
+    /// The short over the long semi-axis.
     k: f64,
-    /// `K(e)`.
+    /// The complete elliptic integral of the first kind, `K(e)`.
     first: f64,
     /// `approach / (A a^2) = e^2 K / (K - E)`, with the smaller curvature A.
     approach_ratio: f64,
 }
 
 impl Shape {
+    /// The shape for the ratio B/A of the larger to the smaller curvature.
     fn of(ratio: f64) -> Shape {
-        // B/A as a function of k falls from infinity at 0 to 1 at 1; bisection in log k to the last bit.
+        // B/A is a function of k that falls from infinity at k = 0 to 1 at k = 1. Bisection in log k finds k to the last bit.
         let curvature_ratio = |k: f64| {
             let (_, d, b) = elliptic(k);
             b / d / (k * k)
@@ -101,12 +105,12 @@ impl Shape {
     }
 }
 
-/// `K`, `D = (K - E)/e^2` and `B = (E - k^2 K)/e^2` of the modulus with `e^2 = 1 - k^2`, by the arithmetic-geometric mean
-/// (Abramowitz & Stegun 17.6): with `c_0 = e`, `K - E = K sum of 2^(n-1) c_n^2`. `D + B = K`.
+/// Computes the elliptic integrals `K`, `D = (K - E)/e^2` and `B = (E - k^2 K)/e^2` of the modulus e, where `e^2 = 1 - k^2`. The method is the
+/// arithmetic-geometric mean (Abramowitz & Stegun 17.6), where `c_0 = e` and `K - E = K sum of 2^(n-1) c_n^2` over n >= 0. Then `B = K - D`.
 fn elliptic(k: f64) -> (f64, f64, f64) {
     let e2 = (1.0 - k) * (1.0 + k);
     let (mut a, mut g) = (1.0, k);
-    // sum over n >= 1 of 2^(n-1) c_n^2 / e^2: c_1 = (1 - k)/2, and e^2 = (1 - k)(1 + k) divides out.
+    // `sum` is the sum over n >= 1 of 2^(n-1) c_n^2 / e^2. Its first term has c_1 = (1 - k)/2 and e^2 = (1 - k)(1 + k), so a factor 1 - k cancels.
     let (mut power, mut sum) = (1.0, 0.0);
     let mut c2_over_e2 = 0.25 * (1.0 - k) / (1.0 + k);
     for _ in 0..60 {

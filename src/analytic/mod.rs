@@ -1,4 +1,4 @@
-//! Closed forms to which numerical results are compared.
+//! Exact solutions, with which numerical results are compared.
 
 mod hertz;
 

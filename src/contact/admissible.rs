@@ -1,11 +1,11 @@
-//! Admissible sets: the pressures that a scene allows. Steps (4.1) and (4.2) are projections on them, with one implementation for all sets.
+//! Admissible sets: the pressures that a scene allows. Steps (4.1) and (4.2) are projections on such a set, with one implementation for all sets.
 //!
 //! ```text
 //! half-line   0 <= p              (NonNegative)
 //! box         0 <= p <= p_max     (PressureLimit, the effect)
 //! ```
 //!
-//! A third set is that of a given contact area (active_set FIXED): any pressure on the given elements ([`Fixed`]).
+//! A third set belongs to a given contact area (option `active_set` FIXED): it allows any pressure on the given elements ([`Fixed`]).
 //!
 //! An element is free (in C, with e = 0), exterior (p = 0, e >= 0), or at its limit (p = p_max, e <= 0). A half-line has no limit:
 //! [`AdmissibleSet::LIMITED`] is a constant, and code for limits is not compiled.
@@ -14,16 +14,16 @@ use crate::effects::{Each, PressureLimit};
 
 /// The pressures that each element may have.
 pub trait AdmissibleSet: Copy + Send + Sync {
-    /// Whether there are limits.
+    /// Whether elements have a pressure limit.
     const LIMITED: bool;
 
     /// Whether the contact area is given: no element enters or leaves it, and pressures may be negative.
     const FIXED: bool = false;
 
-    /// The set on a part of the grid, or on a coarser one.
+    /// The type of the same set on a part of the grid, or on a coarser grid.
     type Within<'a>: AdmissibleSet;
 
-    /// The set with the `limits` of its elements, if there are any.
+    /// The same set on other elements, with the pressure `limits` of these elements. A set without limits ignores them.
     fn within(limits: &[f64]) -> Self::Within<'_>;
 
     /// The greatest pressure of element i; `+infinity` without a limit.
@@ -31,12 +31,13 @@ pub trait AdmissibleSet: Copy + Send + Sync {
         f64::INFINITY
     }
 
-    /// Whether any of the pressures `p` of elements from `first` on exceeds its limit, in a loop that the compiler vectorises.
+    /// Whether any of the pressures `p` exceeds its element's limit. The pressures are those of the elements `first`, `first + 1`, ... The compiler
+    /// vectorises the loop.
     fn any_beyond(&self, _first: usize, _p: impl Iterator<Item = f64>) -> bool {
         false
     }
 
-    /// The admissible pressure nearest to `p`.
+    /// The admissible pressure of element i that is nearest to `p`.
     fn project(&self, i: usize, p: f64) -> f64 {
         let p = p.max(0.0);
         if Self::LIMITED {
@@ -51,15 +52,15 @@ pub trait AdmissibleSet: Copy + Send + Sync {
         !Self::FIXED && (p < 0.0 || Self::LIMITED && p > self.limit(i))
     }
 
-    /// Step (4.2): whether an element that is not free, at its limit or exterior, enters C with the deformed distance `e`. The paper has `e <= 0`. An
-    /// element with `e = 0` and `p = 0` satisfies the conditions of C and of the exterior area. Here it stays exterior. So it does not count as a
-    /// change of C (step 5), and conforming bodies do not enter C as a whole.
+    /// Step (4.2): whether an element outside C (exterior, or `at_limit`) with the deformed distance `e` enters C. The paper admits exterior elements
+    /// with `e <= 0`, this function those with `e < 0`. An element with `e = 0` and `p = 0` satisfies the conditions of C and those of the exterior
+    /// area. Here it stays exterior. So it does not count as a change of C (step 5), and conforming bodies do not enter C as a whole.
     fn enters(&self, at_limit: bool, e: f64) -> bool {
         !Self::FIXED && if at_limit { e > 0.0 } else { e < 0.0 }
     }
 }
 
-/// `p >= 0`.
+/// The half-line `p >= 0`.
 #[derive(Clone, Copy, Debug)]
 pub struct NonNegative;
 
@@ -92,7 +93,7 @@ impl AdmissibleSet for Fixed {
     }
 }
 
-/// `0 <= p <= p_max`.
+/// The box `0 <= p <= p_max`.
 impl AdmissibleSet for PressureLimit<'_> {
     const LIMITED: bool = true;
 

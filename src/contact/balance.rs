@@ -1,4 +1,4 @@
-//! Pressures of an admissible set that carry a prescribed force.
+//! Makes pressures of an admissible set carry a prescribed force.
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -10,15 +10,16 @@ use crate::scene::Load;
 use crate::sums::{Sums, ROUND_OFF};
 use crate::threads::Threads;
 
-/// Most rounds of [`State::carry_force`] with limits. Nearly every round but the last brings elements to their limit, mostly many.
+/// The largest number of rounds of [`State::carry_force`] with limits. Nearly every round except the last brings elements to their limit, usually
+/// many.
 const ROUNDS: u32 = 50;
 
-/// Pressures cancel if |sum of p| is below this part of the sum of |p|: p then gets the force by an added pressure, not by a factor. Contact
-/// pressures q and attraction cancel if p is below this part of q.
+/// Pressures of both signs cancel if |sum of p| is below this part of the sum of |p|. Then p is made to carry the force by an added uniform pressure,
+/// not by a factor. With adhesion, contact pressures q and attraction cancel if their sum p is below this part of q.
 pub const CANCELLED: f64 = 1e-3;
 
 impl State {
-    /// Whether p carries a prescribed force.
+    /// Whether p carries the prescribed force up to round-off. True if the approach is prescribed.
     pub fn carries(&self, threads: &Threads) -> bool {
         let Load::Force(force) = self.load else { return true };
         let [sum, all] = self.sum_pressures(threads, |p| [p, p.abs()]);
@@ -26,8 +27,8 @@ impl State {
         (sum * area - force).abs() <= ROUND_OFF * (all * area + force.abs())
     }
 
-    /// Projects p on the set and makes it carry a prescribed force: by [`State::balance_force`] if no limit is reached.
-    /// Call before u is recomputed.
+    /// Projects p on the set and makes p carry a prescribed force. If no element reaches its limit, [`State::balance_force`] does this, and the
+    /// result is its factor. Otherwise the result is None. Call this function before u is recomputed.
     pub fn carry_force<S: AdmissibleSet>(&mut self, set: S, threads: &Threads) -> Option<f64> {
         if S::FIXED && self.is_cancelled(threads) {
             self.shift_mean(threads);
@@ -59,7 +60,7 @@ impl State {
                 // Elements at their limit carry the force up to round-off.
                 break;
             } else if missing < 0.0 {
-                // The force is less than that of elements at their limit: they leave the limit.
+                // The elements at their limit carry more than the force: all of them leave their limit.
                 self.p.iter_mut().for_each(|p| *p *= pressures / all);
                 self.contact.iter_mut().zip(&mut self.at_limit).for_each(|(inside, at)| *inside |= std::mem::take(at));
             } else {
@@ -70,7 +71,8 @@ impl State {
         None
     }
 
-    /// Adds a uniform pressure on C. If C is empty, exterior elements with a surface in reach enter C first.
+    /// Adds a uniform pressure on C, whose sum over C is `pressures`. If C is empty, all elements with |h| < [`LARGEST`] that are not at their limit
+    /// enter C first.
     fn spread(&mut self, pressures: f64) {
         if self.contact_count() == 0 {
             for i in 0..self.h.len() {
@@ -81,14 +83,14 @@ impl State {
         self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += uniform);
     }
 
-    /// Whether a prescribed force is much smaller than the sum of |p|. Then a factor on p that gives the force may be far too large.
+    /// Whether a prescribed force is much smaller than the force of |p|. Then the factor that makes p carry the force may be far too large.
     pub fn is_cancelled(&self, threads: &Threads) -> bool {
         let Load::Force(force) = self.load else { return false };
         let [all] = self.sum_pressures(threads, |p| [p.abs()]);
         force.abs() <= CANCELLED * all * self.grid.element_area()
     }
 
-    /// Carries a cancelled force on a given contact area by a uniform pressure added on C.
+    /// Makes p carry the prescribed force by a uniform pressure added on C.
     fn shift_mean(&mut self, threads: &Threads) {
         let Load::Force(force) = self.load else { return };
         let [all, _, count] = self.sum_on_contact(threads);
@@ -96,8 +98,8 @@ impl State {
         self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += missing);
     }
 
-    /// The sum of p, the sum of p on C, and the number of elements in C. In blocks: the round-off of a plain sum of many equal pressures exceeds
-    /// [`ROUND_OFF`].
+    /// Returns the sum of p, the sum of p on C, and the number of elements in C. The sums are taken in blocks: if many equal pressures were added one
+    /// by one, the round-off would exceed [`ROUND_OFF`].
     fn sum_on_contact(&self, threads: &Threads) -> [f64; 3] {
         let of_block = |block: Range<usize>| {
             let mut sums = Sums::new();

@@ -1,29 +1,34 @@
-//! A start for surfaces with a limit of pressure: the bearing area.
+//! A start for surfaces with a pressure limit: the bearing area.
 //!
-//! If displacements are small compared with the differences in distance of elements, the contact area of such a surface follows from its heights
-//! (Abbott & Firestone 1933): the lowest elements are at their limit, as many as the force needs, or all below the approach.
+//! If elastic displacements are small compared with the differences in h between elements, the contact area of such a surface follows from h alone
+//! (Abbott & Firestone 1933): the elements with the smallest h are at their limit. With a given force these are as many as the force needs; with a
+//! given approach, all elements with h below the approach.
 
 use super::{AdmissibleSet, Freshness, State};
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// Most elements whose state depends on displacements, relative to those at their limit. With more, a start from coarser grids is better.
+/// The start is used if at most this share of elements is undecided: their state (in contact, at the limit, exterior) depends on displacements. The
+/// share is relative to the elements at their limit. If there are more, a start from coarser grids is better.
 pub const UNDECIDED_SHARE: f64 = 0.1;
 /// Accuracy of the depth, relative to the largest displacement.
 const DEPTH_ACCURACY: f64 = 0.25;
-/// Most halvings of a bracket of the depth: the bits of a double.
+/// The largest number of halvings of the bracket of the depth: as many as a double has bits.
 const HALVINGS: u32 = 64;
 
-/// The elements below a depth.
+/// The elements with h up to a depth, and their pressure limits.
 struct Below {
+    /// The number of these elements.
     count: usize,
-    /// The sum of the limits, and the largest.
+    /// The sum of their limits.
     limits: f64,
+    /// The largest of their limits.
     largest: f64,
 }
 
 impl State {
-    /// Starts on the bearing area, if at most this share of elements depend on displacements. Returns the bound on displacements there.
+    /// Sets the state to the bearing area if at most the share `undecided_share` of elements depends on displacements. Returns a bound on the
+    /// displacements, or None (the state is unchanged) if more elements are undecided or the scene has no limits.
     pub fn start_on_bearing_area<S: AdmissibleSet>(
         &mut self,
         set: S,
@@ -51,7 +56,8 @@ impl State {
         Some(reach)
     }
 
-    /// Two depths around the one that carries `pressures` at the limits, as close as displacements allow.
+    /// Brackets the depth up to which elements at their limits carry the sum `pressures` of all p. The bracket is as narrow as the displacements make
+    /// sense of ([`DEPTH_ACCURACY`]).
     fn depth_of_bearing<S: AdmissibleSet>(&self, set: S, pressures: f64, self_influence: f64) -> (f64, f64) {
         let finite = || self.h.iter().copied().filter(|h| h.is_finite());
         let (mut low, mut high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(h), b.max(h)));
@@ -70,6 +76,7 @@ impl State {
         (low, high)
     }
 
+    /// Counts the elements with h up to `depth`.
     fn below<S: AdmissibleSet>(&self, set: S, depth: f64) -> Below {
         let mut below = Below { count: 0, limits: 0.0, largest: 0.0 };
         for (i, _) in self.h.iter().enumerate().filter(|(_, h)| **h <= depth) {
@@ -81,14 +88,15 @@ impl State {
         below
     }
 
-    /// A bound on the displacement by pressures up to the largest on this area: that of uniform pressure on a circle, `2 p a / E*` at its centre
-    /// (Johnson, eq. 3.22).
+    /// A bound on the displacements by elements at their limits: the displacement `2 p a / E*` at the centre of a circle of the same area, with the
+    /// radius a, under the largest of the limits as a uniform pressure (Johnson, Contact Mechanics, section 3.4).
     fn deepest(&self, below: &Below, self_influence: f64) -> f64 {
         let area = below.count as f64 * self.grid.element_area();
         2.0 * below.largest * (area / std::f64::consts::PI).sqrt() / self.grid.modulus(self_influence)
     }
 
-    /// Puts elements up to the first depth at their limit; those up to the second carry the rest, one after the other.
+    /// Puts elements with h up to `low` at their limit; the sum of their pressures is `carried`. Elements with h from `low` to `high` carry the rest
+    /// of a given force, in their order on the grid: each is at its limit, until the last one takes what is left.
     fn press_below<S: AdmissibleSet>(&mut self, set: S, (low, high): (f64, f64), carried: f64) {
         let mut left = match self.load {
             Load::Approach(_) => 0.0,

@@ -1,4 +1,4 @@
-//! The measures of how well the contact conditions hold, all from p, h and a fresh u = A p.
+//! The certificate: measures of how well the contact conditions hold, computed from p, h and a fresh u = A p.
 
 use super::survey_pass::Pass;
 pub use super::survey_pass::Survey;
@@ -7,30 +7,30 @@ use crate::blocks;
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// The measures of a solution. Status OK means that they are within the tolerance.
+/// The measures that decide the status of a solution. Status OK means that they are within the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Certificate {
-    /// `||h - approach + A p|| / ||h - approach||`, 2-norms over C.
+    /// `||h - approach + A p|| / ||h - approach||`, with 2-norms over C.
     pub residual: f64,
-    /// Largest `-e` over the exterior area, or e over the elements at their limit, 0 when there is none: a length.
+    /// The largest `-e` in the exterior area or e of an element at its limit, a length. 0 if neither is positive.
     pub violation: f64,
-    /// `sum of p |e| / sum of p |u|` over all elements: pressures times gaps, against the elastic energy.
+    /// `sum of p |e| / sum of p |u|` over all elements: pressures times gaps, relative to twice the elastic energy.
     pub complementarity: f64,
-    /// Smallest pressure.
+    /// The smallest pressure.
     pub min_pressure: f64,
 }
 
-/// The relative round-off of `h - approach` for h equal to the approach: a sum and a mean of equal numbers. Distances below it count as 0
-/// (the bodies fit exactly). Larger ones are kept even if they may be round-off of a huge offset.
+/// The round-off of `h - approach`, relative to the approach, if the bodies fit exactly: then all h are equal, and the approach is their mean.
+/// Distances below this round-off count as 0. Larger distances count, even if they may be round-off of a huge offset that all h have in common.
 pub const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
 impl Survey {
-    /// Surveys a state.
+    /// Computes the survey of a state.
     pub fn of(state: &State) -> Survey {
         Survey::by(state, &Threads::One)
     }
 
-    /// Surveys a state by several threads, in fixed blocks of rows: the bits do not depend on the number of threads.
+    /// Computes the survey of a state by several threads. Sums are taken in fixed blocks of rows, so no bit depends on the number of threads.
     pub fn by(state: &State, threads: &Threads) -> Survey {
         let nothing = Survey { range: (f64::INFINITY, f64::NEG_INFINITY), ..Survey::default() };
         let of_block = |elements| {
@@ -39,16 +39,16 @@ impl Survey {
             survey
         };
         let mut survey = blocks::fold(&state.grid, threads, nothing, of_block, |so_far, block| so_far.joined(&block));
-        let mut touching = survey.distance;
+        let mut squares_of_distance = survey.distance;
         if state.has_limited() {
-            touching += survey.add_limited(state);
+            squares_of_distance += survey.add_limited(state);
         }
-        survey.scale = (touching / survey.contact_count.max(1) as f64).sqrt();
+        survey.scale = (squares_of_distance / survey.contact_count.max(1) as f64).sqrt();
         survey.finish(state);
         survey
     }
 
-    /// The survey of two parts of a grid together, as sums.
+    /// Joins the surveys of two parts of a grid, before [`finish`](Survey::finish): `residual` and `distance` are still sums of squares.
     fn joined(self, other: &Survey) -> Survey {
         Survey {
             residual: self.residual + other.residual,
@@ -63,10 +63,12 @@ impl Survey {
         }
     }
 
-    /// Takes norms of the sums. Sets measures to 0 that are round-off of equal terms.
+    /// Takes the roots of the sums of squares. If the bodies fit exactly, so that the norms of distances and of e are round-off, the measures become
+    /// 0.
     fn finish(&mut self, state: &State) {
         (self.residual, self.distance) = (self.residual.sqrt(), self.distance.sqrt());
         let offset = ROUND_OFF * state.approach.abs();
+        // The norms over C of the round-off of h - approach and of the round-off of u.
         let noise = offset * (self.contact_count as f64).sqrt() + state.round_off * self.squares.sqrt();
         if noise.is_finite() && self.distance <= noise && self.residual <= noise && !self.is_hidden(state) {
             self.residual = 0.0;
@@ -78,13 +80,13 @@ impl Survey {
         }
     }
 
-    /// By force: whether the round-off of distances hides displacements that pressures cause. Nothing is then known of these pressures, unless they are
-    /// at their limit.
+    /// If the force is prescribed: whether the round-off of distances hides displacements that pressures cause. Then nothing is known of these
+    /// pressures, unless elements are at their limit.
     fn is_hidden(&self, state: &State) -> bool {
         if !matches!(state.load, Load::Force(_)) || state.has_limited() {
             return false;
         }
-        // The force alone gives the pressure of one element whose neighbours are apart.
+        // If only one element is in contact and no other one nearly touches, the force alone gives its pressure.
         let is_near =
             |i: usize| !state.contact[i] && state.deformed_distance(i) <= 2.0 * ROUND_OFF * state.approach.abs();
         if self.contact_count == 1 && !(0..state.p.len()).any(is_near) {
@@ -95,19 +97,20 @@ impl Survey {
         displaced > state.round_off * self.squares.sqrt()
     }
 
-    /// Adds the elements at their limit, whose e must not be positive. Returns their sum of `(h - approach)^2`.
+    /// Adds the elements at their limit, whose e must not be positive, to the count and to the violation. Returns the sum of `(h - approach)^2` over
+    /// these elements.
     fn add_limited(&mut self, state: &State) -> f64 {
-        let mut touching = 0.0;
+        let mut squares_of_distance = 0.0;
         for i in (0..state.p.len()).filter(|&i| state.at_limit[i]) {
             self.contact_count += 1;
             self.violation = self.violation.max(state.deformed_distance(i));
-            touching += (state.h[i] - state.approach).powi(2);
+            squares_of_distance += (state.h[i] - state.approach).powi(2);
         }
-        touching
+        squares_of_distance
     }
 
-    /// The larger of the relative residual and the relative violation (1 for p = 0); infinite if pressures are not admissible or a measure is
-    /// NaN, which `max` alone would drop.
+    /// The larger of the relative residual and the relative violation. The residual of p = 0 is 1. The result is infinite if a pressure is negative
+    /// or a measure is NaN (which `f64::max` alone would drop).
     pub fn violation<S: AdmissibleSet>(&self, _: S) -> f64 {
         let residual = relative(self.residual, self.distance);
         let violation = if S::FIXED { 0.0 } else { relative(self.violation, self.scale) };
@@ -118,12 +121,12 @@ impl Survey {
         }
     }
 
-    /// The residual, relative to the distances; 0 where there is none.
+    /// `||e|| / ||h - approach||` over C; 0 if the residual is 0.
     pub fn relative_residual(&self) -> f64 {
         relative(self.residual, self.distance)
     }
 
-    /// The measures of the solution.
+    /// The certificate that belongs to this survey.
     pub fn certificate(&self) -> Certificate {
         Certificate {
             residual: self.relative_residual(),
@@ -134,7 +137,7 @@ impl Survey {
     }
 }
 
-/// A value relative to a scale; 0 relative to any scale is 0, even to 0.
+/// `value / scale`, or 0 if `value` is 0, even if the scale is 0, too.
 pub fn relative(value: f64, scale: f64) -> f64 {
     if value == 0.0 {
         0.0
@@ -143,7 +146,7 @@ pub fn relative(value: f64, scale: f64) -> f64 {
     }
 }
 
-/// The largest of some measures, infinite if one is NaN.
+/// The largest of several measures, or 0 if all are negative. It is infinite if one of them is NaN.
 pub fn largest<const K: usize>(values: [f64; K]) -> f64 {
     values.into_iter().fold(0.0, |worst: f64, value| match value {
         value if value <= worst => worst,
@@ -162,6 +165,7 @@ pub fn residual_norm(state: &State) -> f64 {
     over_contact(state, |i| state.deformed_distance(i))
 }
 
+/// The 2-norm over C of `value(i)`.
 fn over_contact(state: &State, value: impl Fn(usize) -> f64) -> f64 {
     let mut sum = 0.0;
     for i in state.rows_with_contact().flatten().filter(|&i| state.contact[i]) {

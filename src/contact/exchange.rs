@@ -7,8 +7,8 @@ use super::State;
 use crate::blocks;
 use crate::threads::Threads;
 
-/// Step (4.1): elements of C with p < 0 go to the exterior area with `p = 0`, elements above their limit to the limit. Returns their
-/// number.
+/// Step (4.1): moves elements of C with p < 0 to the exterior area, with `p = 0`, and elements of C with p above their limit to the limit. Returns
+/// the number of elements that leave C.
 pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S, threads: &Threads) -> usize {
     if S::FIXED {
         return 0;
@@ -46,7 +46,7 @@ pub fn all_stay<S: AdmissibleSet>(state: &State, set: S) -> bool {
     S::FIXED || !some_leaves(set, &state.p, &state.contact, 0..state.p.len())
 }
 
-/// Element i leaves C for its limit or for p = 0. Returns the change of its pressure.
+/// Moves element i from C to its limit or to the exterior area, and sets its p. Returns the change of this pressure.
 pub fn leave<S: AdmissibleSet>(state: &mut State, set: S, i: usize, for_limit: bool) -> f64 {
     let (before, at_limit) = (state.p[i], S::LIMITED && for_limit);
     if at_limit {
@@ -57,7 +57,7 @@ pub fn leave<S: AdmissibleSet>(state: &mut State, set: S, i: usize, for_limit: b
     state.p[i] - before
 }
 
-/// Element i enters C, from its limit or from the exterior area.
+/// Moves element i to C, from its limit or from the exterior area.
 pub fn enter<S: AdmissibleSet>(state: &mut State, i: usize) {
     state.contact[i] = true;
     if S::LIMITED {
@@ -65,15 +65,15 @@ pub fn enter<S: AdmissibleSet>(state: &mut State, i: usize) {
     }
 }
 
-/// Whether any of these elements leaves C. Tests all of them: the compiler vectorises this.
+/// Whether any of these elements leaves C. The loop tests all of them instead of stopping at the first, so that the compiler vectorises it.
 #[inline(always)]
 fn some_leaves<S: AdmissibleSet>(set: S, p: &[f64], contact: &[bool], elements: Range<usize>) -> bool {
     let values = p[elements.clone()].iter().zip(&contact[elements.clone()]).zip(elements);
     values.fold(0, |some, ((p, inside), i)| some | u64::from(inside & set.leaves(i, *p))) != 0
 }
 
-/// Step (4.2): exterior elements with `e < 0`, and elements at their limit with `e > 0`, enter the contact area. Returns their number.
-/// Needs u = A p of the truncated p.
+/// Step (4.2): moves exterior elements with `e < 0`, and elements at their limit with `e > 0`, to C. Returns the number of elements that enter C.
+/// `state.u` must be A p of the p that [`truncate`] left.
 pub fn admit<S: AdmissibleSet>(state: &mut State, set: S) -> usize {
     if S::FIXED {
         return 0;

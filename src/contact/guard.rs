@@ -1,17 +1,19 @@
-//! The guard against cycles of the active set.
+//! The guard against endless cycles of the active set.
 //!
-//! Exchanging all violators at once is fast but may cycle. Block principal pivoting (Judice & Pires 1994; Kim & Park
-//! 2011) terminates for P-matrices. All violators are exchanged when their number is a new minimum, and up to two times
-//! more after it. Then only the violator of the highest index is exchanged, until there is a new minimum. With pressure
-//! limits and a prescribed force even this may cycle.
+//! A violator is an element that has to leave or enter C. If all violators are exchanged at once, the iteration is fast but may cycle. Block
+//! principal pivoting (Judice & Pires 1994; Kim & Park 2011) terminates for P-matrices: all violators are exchanged when their number is a new
+//! minimum, and up to two times more after that. Then only the violator with the highest index is exchanged, until there is a new minimum. With
+//! pressure limits and a prescribed force even block principal pivoting may cycle.
 
-/// Full exchanges from a new minimum on, including the one at the minimum.
+/// The number of full exchanges from a new minimum on, including the one at the minimum.
 const FULL_EXCHANGES: u32 = 3;
 
-/// Decides whether all violators may be exchanged, or one.
+/// Decides whether all violators may be exchanged, or only one.
 #[derive(Clone, Copy, Debug)]
 pub struct ExchangeGuard {
+    /// The smallest number of violators so far.
     fewest: usize,
+    /// The full exchanges that are left, including the current one.
     tries: u32,
 }
 
@@ -22,7 +24,7 @@ impl Default for ExchangeGuard {
 }
 
 impl ExchangeGuard {
-    /// Whether all of `violators` may be exchanged at once.
+    /// Whether all violators, of which there are `violators`, may be exchanged at once.
     pub fn allows_all(&mut self, violators: usize) -> bool {
         if violators < self.fewest {
             self.fewest = violators;

@@ -1,4 +1,5 @@
-//! The active set: the elements in contact, steps (4.1) and (4.2) of the paper, and the certificate.
+//! The state of a solve (pressures, displacements, contact area), the exchange of elements between contact and exterior area (steps (4.1) and (4.2)
+//! of the paper), and the certificate.
 
 mod admissible;
 mod balance;
@@ -23,7 +24,7 @@ pub use exchange::{admit, all_stay, enter, leave, truncate};
 pub use guard::ExchangeGuard;
 pub(crate) use outline::STRAIGHT;
 pub use outline::{touching, Outline};
-pub use problem::{Problem, OF_PRODUCT};
+pub use problem::{Problem, PRODUCT_ROUND_OFF};
 pub use snapshot::Snapshot;
 pub use state::State;
 pub use values::{lowest, presses, Freshness};

@@ -1,13 +1,13 @@
-//! The operators of `u = A p` on one grid, in double precision. u is computed on every element, but few elements carry pressure:
+//! The operators of `u = A p` on one grid, in double precision. u is computed on every element, but often few elements carry pressure. Then shorter
+//! periods of the FFT suffice:
 //!
 //! ```text
 //! p on elements s..e of a row of m      offsets -(e - 1) .. m - 1 - s occur,    reach = max(e - 1, m - 1 - s)
 //! period = 2 reach                      m + (e - s) - 2 for contact in the middle of the grid, 2 m - 2 for any p
 //! ```
 //!
-//! If contact covers 0.6 of each side in the middle of the grid, a product takes three quarters of the time, and so
-//! does the set-up of its symbol. The choice of the operator depends on p alone. So no bit of a product depends on
-//! earlier products.
+//! If the contact area covers 0.6 of each side in the middle of the grid, a product takes three quarters of the time that it takes with the full
+//! periods, and so does the set-up of its symbol. The choice of the operator depends on p alone. So no bit of a product depends on earlier products.
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -21,15 +21,16 @@ use crate::operator::{even_periods, Needs, Operator, Reach, SetUp, Workspace};
 use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
-/// Grids of at most this many elements use direct summation, which needs no set-up. Measured on a first call with a
-/// separate table: it takes 0.64 of the time with an operator for one element, 0.68 for 2 x 2 elements.
+/// Grids of at most this many elements use direct summation, which needs no set-up. A first call with direct summation takes 0.64 of the time of one
+/// with an FFT for one element, and 0.68 for 2 x 2 elements (measured).
 const DIRECT_SUMMATION: usize = 4;
-/// Grids of fewer elements use one operator for all products. There is little to save, and many small problems have many contact areas.
+/// Grids of fewer elements use one operator for all products. There is little to save, and many small problems with many contact areas would set up
+/// many operators.
 const SMALLEST_GRID: usize = 128 * 128;
-/// A reach gets a separate operator if its periods have at most this fraction of the elements of the full periods.
+/// A [`Reach`] gets a separate operator if its periods px py are at most this fraction of the full periods.
 const LARGEST_PERIODS: f64 = 0.8;
 
-/// The inputs of an operator.
+/// What the operators of a grid are made of.
 #[derive(Clone, Copy)]
 pub(super) struct MadeOf<'a> {
     pub coefficients: &'a Coefficients,
@@ -37,28 +38,28 @@ pub(super) struct MadeOf<'a> {
     pub threads: &'a Threads,
 }
 
-/// Operators of one grid. Each is set up when it is first needed.
+/// The operators of one grid: one for any p, and one for p on a part of the grid. Each is set up when it is first needed.
 #[derive(Default)]
 pub(super) struct Operators {
-    /// A itself by rows, on grids with direct summation.
+    /// The entries of A, row by row, on grids with direct summation.
     matrix: Option<[f64; DIRECT_SUMMATION * DIRECT_SUMMATION]>,
     /// The operator for any p.
     whole: Option<Arc<Operator<f64>>>,
-    /// The last operator for p on a part of the grid, and whether its coefficients are the current ones.
+    /// The last operator for p on a part of the grid. The flag is false if the coefficients have changed since its symbol was computed.
     part: Option<(Operator<f64>, bool)>,
-    /// The workspace of the last product, and the needs that it satisfies.
+    /// The workspace of the last product, and the sizes that it has.
     workspace: Option<(Needs, Workspace<f64>)>,
-    /// Memory for the set-up with other coefficients.
+    /// Memory for the computation of symbols, reused by the next one.
     set_up: SetUp,
 }
 
 impl Operators {
-    /// Operators with a given one for any p.
+    /// Operators of a grid whose operator for any p exists already.
     pub fn with(whole: Arc<Operator<f64>>) -> Operators {
         Operators { whole: Some(whole), ..Operators::default() }
     }
 
-    /// The operator for any p.
+    /// Returns the operator for any p, and sets it up at the first call.
     pub fn whole(&mut self, of: MadeOf<'_>) -> Result<&Arc<Operator<f64>>> {
         let whole = match self.whole.take() {
             Some(whole) => whole,
@@ -67,7 +68,7 @@ impl Operators {
         Ok(self.whole.insert(whole))
     }
 
-    /// A, on grids with direct summation.
+    /// Returns the entries of A on grids with direct summation, None on larger grids.
     fn matrix(
         &mut self,
         MadeOf { coefficients, grid, .. }: MadeOf<'_>,
@@ -86,8 +87,8 @@ impl Operators {
         fit(&mut self.workspace, &whole).map(drop)
     }
 
-    /// Takes changed coefficients. An operator that all products need takes them now. It keeps its plans and its memory if nobody else uses it. The
-    /// others take them when they are needed. After an error these operators must be renewed before they are used.
+    /// Replaces the coefficients. An operator that all products need gets its new symbol now, and keeps its plans and its memory if nobody else holds
+    /// the operator. Other operators get their symbols when they are needed. After an error, `renew` must succeed before the next product.
     pub fn renew(&mut self, of: MadeOf<'_>) -> Result<()> {
         let is_for_parts = of.is_for_parts();
         self.matrix = None;
@@ -99,7 +100,7 @@ impl Operators {
         self.prepare(of)
     }
 
-    /// The operator for any p, if the product with p needs it.
+    /// Returns the operator for any p if the product with `p` uses it, otherwise None.
     pub fn whole_if_needed(&mut self, of: MadeOf<'_>, p: &[f64]) -> Result<Option<Arc<Operator<f64>>>> {
         match of.grid.len() > DIRECT_SUMMATION && of.reach_of(p).is_none() {
             true => Ok(Some(self.whole(of)?.clone())),
@@ -107,7 +108,7 @@ impl Operators {
         }
     }
 
-    /// `u = A p`.
+    /// Computes `u = A p`.
     pub fn displace(&mut self, of: MadeOf<'_>, p: &[f64], u: &mut [f64]) -> Result<()> {
         if !p.chunks_exact(of.grid.mx).any(presses) {
             u.fill(0.0);
@@ -121,7 +122,7 @@ impl Operators {
         self.with_operator(of.reach_of(p), of, |operator, workspace| operator.apply(p, u, workspace))
     }
 
-    /// `p = A p`.
+    /// Replaces p by A p.
     pub fn displace_in_place(&mut self, of: MadeOf<'_>, p: &mut [f64]) -> Result<()> {
         if p.len() <= DIRECT_SUMMATION {
             let given = p.to_vec();
@@ -135,7 +136,7 @@ impl Operators {
         self.with_operator(reach, of, |operator, workspace| operator.apply_in_place(p, workspace))
     }
 
-    /// A product with the operator of a reach; none: with the operator for any p.
+    /// Calls `multiply` with the operator of a reach (None: the operator for any p) and a fitting workspace.
     fn with_operator(
         &mut self,
         reach: Option<Reach>,
@@ -155,7 +156,7 @@ impl Operators {
         Ok(())
     }
 
-    /// The operator of a reach.
+    /// Returns the operator for pressures within a reach. It is set up if the last one has another reach.
     fn part(&mut self, reach: Reach, MadeOf { coefficients, grid, threads }: MadeOf<'_>) -> Result<&Operator<f64>> {
         let part = match self.part.take().filter(|(part, _)| part.reach() == reach) {
             Some((part, true)) => part,
@@ -168,7 +169,7 @@ impl Operators {
         Ok(&self.part.insert((part, true)).0)
     }
 
-    /// Releases the memory of products while they are not needed.
+    /// Releases the workspace until the next product.
     pub fn rest(&mut self) {
         self.workspace = None;
     }
@@ -178,7 +179,7 @@ impl Operators {
         self.whole.as_ref().map_or(0, |operator| operator.bytes())
     }
 
-    /// Bytes held.
+    /// Bytes of both operators and of the workspace.
     pub fn bytes(&self) -> usize {
         let whole = self.bytes_of_whole();
         let part = self.part.as_ref().map_or(0, |(part, _)| part.bytes());
@@ -187,21 +188,23 @@ impl Operators {
 }
 
 impl MadeOf<'_> {
-    /// Whether an operator for a part of the grid is possible.
+    /// Whether p on a part of the grid may get a separate operator: the grid is large enough, and A is Toeplitz with even coefficients, without
+    /// periods and tables of rows.
     fn is_for_parts(&self) -> bool {
         let MadeOf { coefficients, grid, .. } = self;
         let is_toeplitz = coefficients.row_tables().is_none() && coefficients.repeats(grid) == (false, false);
         grid.len() >= SMALLEST_GRID && is_toeplitz && coefficients.is_even(grid)
     }
 
-    /// The reach of p, if it gets a separate operator.
+    /// The reach of p if p gets a separate operator, otherwise None.
     fn reach_of(&self, p: &[f64]) -> Option<Reach> {
         if !self.is_for_parts() {
             return None;
         }
         let Grid { mx, my, .. } = *self.grid;
         let Rectangle { x, y } = loaded(p, self.grid, self.threads)?;
-        // Few lengths have a fast transform. So a contact area that moves in small steps keeps its operator over many of them.
+        // Few lengths have a fast transform, so neighbouring reaches have the same period. A contact area that moves in small steps keeps its
+        // operator over many steps.
         let farthest = |loaded: Range<usize>, m: usize| loaded.end.max(m - loaded.start).max(m.div_ceil(2) + 1) - 1;
         let periods = |x: usize, y: usize| even_periods(self.coefficients, self.grid, (2 * x, 2 * y));
         let ((px, py), (full_x, full_y)) = (periods(farthest(x, mx), farthest(y, my)), periods(mx - 1, my - 1));
@@ -210,7 +213,7 @@ impl MadeOf<'_> {
     }
 }
 
-/// The workspace of an operator: the existing one if it fits.
+/// Returns a workspace for products by an operator: the existing one if it has the right sizes, otherwise a new one.
 fn fit<'a>(
     workspace: &'a mut Option<(Needs, Workspace<f64>)>,
     operator: &Operator<f64>,
@@ -223,7 +226,7 @@ fn fit<'a>(
     Ok(&mut workspace.insert(fitting).1)
 }
 
-/// The rectangle outside of which p is 0. None if p is 0 everywhere.
+/// The smallest rectangle outside of which p is 0. None if p is 0 everywhere.
 fn loaded(p: &[f64], grid: &Grid, threads: &Threads) -> Option<Rectangle> {
     Rectangle::around_values(p, grid, threads, presses)
 }

@@ -1,17 +1,17 @@
-//! The outline of the contact area, from which its true area is estimated.
+//! The outline of the contact area, from which the true area of contact is estimated.
 //!
-//! Counting whole elements overestimates a contact area, by a part of the elements along its outline. With N_a elements in
-//! contact and M changes between contact and exterior along all rows and columns (Yastrebov, Anciaux, Molinari 2017)
+//! The area of the elements in contact overestimates the true area, by a part of the elements along the outline. Let N_a elements be in contact, and
+//! let M be the number of changes between contact and exterior along all rows and columns. The corrected area is (Yastrebov, Anciaux, Molinari 2017)
 //!
 //! ```text
 //! A* = (N_a - c M) dx dy,    c = (pi - 1 + ln 2)/24
 //! ```
 //!
-//! c is a mean over all directions of the outline, in units of the elements. For elements that are not square the outline is stretched to
-//! square ones: N_a and M are the same, and the area scales by dx dy.
+//! The number c is a mean over all directions of the outline, for square elements of size 1. If elements are not square, the grid is stretched until
+//! they are: N_a and M stay the same, and the area scales by dx dy.
 //!
-//! c does not hold for a straight outline parallel to the elements: all of it is off by the same part of an element.
-//! Changes in such pieces are counted.
+//! The number c does not hold for a straight piece of outline along a row or column: all its elements are off by the same part of an element. Changes
+//! in such pieces are counted separately.
 
 use std::borrow::Cow;
 use std::f64::consts::{LN_2, PI};
@@ -20,9 +20,9 @@ use super::State;
 use crate::grid::Grid;
 use crate::memory::collected;
 
-/// Part of an element by which each change overestimates the area.
+/// The number c: the part of an element by which each change overestimates the area.
 const EXCESS_PER_CHANGE: f64 = (PI - 1.0 + LN_2) / 24.0;
-/// Least elements of a straight piece.
+/// A piece of outline along a row or column counts as straight from this many elements on.
 pub(crate) const STRAIGHT: usize = 8;
 
 /// The outline of a contact area.
@@ -30,29 +30,32 @@ pub(crate) const STRAIGHT: usize = 8;
 pub struct Outline {
     /// M: changes between contact and an exterior element that has a surface, along all rows and columns.
     pub changes: usize,
-    /// Changes in straight pieces, of 8 elements and more or from one end of the grid to the other: pieces along
-    /// columns, and along rows.
+    /// The changes in straight pieces, which have 8 elements or more, or go from one end of the grid to the other. The first number is that of pieces
+    /// along columns, the second that of pieces along rows.
     pub straight: (usize, usize),
-    /// Sides of elements in contact beside an element without a surface.
+    /// The number of sides between an element in contact and an element without a surface.
     pub edges: usize,
-    /// Edges in straight pieces.
+    /// The number of `edges` in straight pieces.
     pub straight_edges: usize,
-    /// Sides on the border of the grid: on its first and last column, and on its first and last row.
+    /// The number of sides of elements in contact on the border of the grid: on the first and last column, and on the first and last row.
     pub border: (usize, usize),
-    /// Rows with contact.
+    /// The number of rows with contact.
     pub rows: usize,
 }
 
-/// Successive rows with the same contact, and their changes and edges.
+/// Successive rows with the same elements in contact.
 #[derive(Default)]
 struct Same {
+    /// The number of these rows.
     rows: usize,
+    /// Changes along one of these rows.
     changes: usize,
+    /// Sides beside elements without a surface, along one of these rows.
     edges: usize,
 }
 
 impl Outline {
-    /// The outline of the elements that touch. Rows without contact cost almost nothing.
+    /// Counts the outline of the elements in contact or at their limit. Rows without contact cost almost nothing.
     pub fn of(state: &State) -> Outline {
         let (mx, my) = (state.grid.mx, state.grid.my);
         let area = touching(state);
@@ -94,6 +97,7 @@ impl Outline {
         outline
     }
 
+    /// Adds the sides of row `iy` that lie on the border of the grid.
     fn add_border(&mut self, row: &[bool], iy: usize, my: usize) {
         self.border.0 += usize::from(row[0]) + usize::from(row[row.len() - 1]);
         if iy == 0 || iy + 1 == my {
@@ -102,7 +106,7 @@ impl Outline {
         }
     }
 
-    /// Ends the rows with the same contact.
+    /// Ends a group of rows with the same elements in contact: in a large group their changes lie in straight pieces along columns.
     fn close(&mut self, same: &mut Same, my: usize) {
         let Same { rows, changes, edges } = std::mem::take(same);
         if rows >= STRAIGHT.min(my) {
@@ -111,41 +115,43 @@ impl Outline {
         }
     }
 
-    /// Sides at which the contact area ends with the surface, or with the grid in directions without a period.
+    /// The number of sides at which the contact area ends because the surface ends there, or the grid in a direction without a period.
     pub fn ends(&self, repeats: (bool, bool)) -> usize {
         let border = |sides: usize, repeats: bool| if repeats { 0 } else { sides };
         self.edges + border(self.border.0, repeats.0) + border(self.border.1, repeats.1)
     }
 
-    /// The sum over the changes in straight pieces of the element's size across the piece.
+    /// Adds up, over all changes in straight pieces, the size of an element across the piece (dx for a piece along a column, dy for one along a row).
     pub fn straight_length(&self, grid: &Grid) -> f64 {
         self.straight.0 as f64 * grid.dx + self.straight.1 as f64 * grid.dy
     }
 
-    /// Mean length of the runs of `count` elements in contact, over rows and columns. A periodic border ends no run.
+    /// The mean number of consecutive elements in contact along rows and columns, if `count` elements are in contact. Contact goes on across a
+    /// periodic border.
     pub fn chord(&self, count: usize, repeats: (bool, bool)) -> f64 {
         let sides = self.changes + self.ends(repeats);
         4.0 * count as f64 / sides.max(1) as f64
     }
 
-    /// The part of the changes that lies in straight pieces.
+    /// The fraction of all changes that lies in straight pieces.
     pub fn straight_part(&self) -> f64 {
         (self.straight.0 + self.straight.1) as f64 / self.changes.max(1) as f64
     }
 
-    /// The root of the number of equal circles with the area of `count` elements and these chords, at least 1: the chord of one circle of this
-    /// area, `(pi/2) sqrt(count/pi)`, over the mean chord.
+    /// How scattered the contact area is: the root of the number of equal circles that together have the area of `count` elements and the mean chord
+    /// of this outline. It is the mean chord of one circle of this area, `(pi/2) sqrt(count/pi)`, over [`chord`](Outline::chord), and at least 1.
     pub fn scatter(&self, count: usize, repeats: (bool, bool)) -> f64 {
         (0.5 * (PI * count as f64).sqrt() / self.chord(count, repeats)).max(1.0)
     }
 
-    /// A*: the area of `count` elements in contact, corrected.
+    /// The corrected area A* if `count` elements are in contact.
     pub fn corrected_area(&self, state: &State, count: usize) -> f64 {
         (count as f64 - EXCESS_PER_CHANGE * self.changes as f64).max(0.0) * state.grid.element_area()
     }
 }
 
-/// The elements that touch: those in contact, and those at their limit. Where no limit is reached, or without memory for a copy, those in contact.
+/// Marks the elements that touch: those in C and those at their limit. If no element is at its limit, or there is no memory for a copy, the result is
+/// C.
 pub fn touching(state: &State) -> Cow<'_, [bool]> {
     if state.has_limited() {
         let touches = (0..state.contact.len()).map(|i| state.touches(i));
@@ -161,14 +167,14 @@ fn holes(h: &[f64]) -> bool {
     h.iter().fold(false, |any, h| any | h.is_infinite())
 }
 
-/// Elements in contact in one of two rows only. Counts in bytes, which SIMD adds many at a time.
+/// The number of elements that are in contact in one of two rows only. It is counted in bytes, of which SIMD adds many at a time.
 fn differing(a: &[bool], b: &[bool]) -> usize {
     const BYTE: usize = u8::MAX as usize;
     let pairs = a.chunks(BYTE).zip(b.chunks(BYTE));
     pairs.map(|(a, b)| usize::from(a.iter().zip(b).map(|(a, b)| u8::from(a != b)).sum::<u8>())).sum()
 }
 
-/// Contiguous pieces of the elements that differ between two rows.
+/// The number of contiguous groups of elements that differ between two rows.
 fn pieces(a: &[bool], b: &[bool]) -> usize {
     let differs = |i: usize| a[i] != b[i];
     (0..a.len()).filter(|&i| differs(i) && (i == 0 || !differs(i - 1))).count()

@@ -1,4 +1,4 @@
-//! The problem of all methods: grid, influence coefficients, operator. The solver owns it.
+//! The problem that all methods solve: grid, influence coefficients and operator. The solver owns the problem.
 
 use std::sync::Arc;
 
@@ -13,26 +13,27 @@ use crate::operator::Operator;
 use crate::sums::Sums;
 use crate::threads::Threads;
 
-/// Round-off of a displacement by FFT, relative to that of an element by itself or to the terms of a distance: some units of round-off.
-pub const OF_PRODUCT: f64 = 16.0 * f64::EPSILON;
-/// The length in elements of a wave whose response is about an element's influence on itself.
+/// Round-off of a displacement computed by FFT, a few units of round-off. It is relative to the displacement of an element by its own pressure, or to
+/// the terms of a distance.
+pub const PRODUCT_ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+/// A wave of pressure of this length, in elements, causes a displacement of about the same amplitude as a pressure on one element causes there.
 const WAVE_OF_SELF_INFLUENCE: f64 = 16.0;
 
-/// `e = h - approach + A p` on one grid, without h, the load and the unknowns, which a [`State`] holds.
+/// The equations `e = h - approach + A p` of one grid: A and its products. h, the load and the unknowns are in [`State`].
 pub struct Problem {
     /// The grid.
     pub grid: Grid,
-    /// Influence coefficients.
+    /// The influence coefficients, of which A consists.
     pub coefficients: Coefficients,
     /// Whether A is symmetric.
     pub symmetric: bool,
-    /// Whether the coefficients are the caller's, which need not be those of an elastic body.
+    /// Whether the caller gave the coefficients. Such coefficients need not be those of an elastic body.
     pub given: bool,
-    /// Whether the surface of the last solve ends between elements only, for estimates.
+    /// Whether the surface of the last solve ends between elements only. Error estimates use this.
     pub exact_edges: bool,
-    /// Whether it has no jumps, for estimates.
+    /// Whether the surface of the last solve has no jumps. Error estimates use this.
     pub exact_jumps: bool,
-    /// Work units of one product.
+    /// The cost of one product on this grid, in work units.
     pub work: f64,
     /// The threads of the solve.
     pub threads: Threads,
@@ -41,12 +42,12 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// The problem of the finest grid.
+    /// Sets up the problem of the finest grid.
     pub fn new(grid: Grid, coefficients: Coefficients, threads: &Threads) -> Result<Problem> {
         Problem::with(Operators::default(), grid, coefficients, 1.0, threads)
     }
 
-    /// The problem of a grid; a product takes `work` of one on the finest.
+    /// The problem of a grid whose operator exists already. A product on it costs `work` work units.
     pub fn with_operator(
         grid: Grid,
         coefficients: Coefficients,
@@ -81,8 +82,8 @@ impl Problem {
         })
     }
 
-    /// Takes other coefficients on the same grid, and keeps plans and memory if the operator is not shared. After an error the problem must be
-    /// renewed before use.
+    /// Replaces the coefficients on the same grid. Plans and memory are kept if the operator is not shared. After an error, `renew` must succeed
+    /// before the problem is used.
     pub fn renew(&mut self, coefficients: Coefficients) -> Result<()> {
         self.symmetric = coefficients.is_symmetric(&self.grid);
         self.coefficients = coefficients;
@@ -90,24 +91,24 @@ impl Problem {
         operators.renew(MadeOf { coefficients, grid, threads })
     }
 
-    /// A for any p, if the product with `p` needs it.
+    /// Returns the operator for any p if the product with `p` uses it, otherwise None.
     pub fn operator_if_needed(&mut self, p: &[f64]) -> Result<Option<Arc<Operator<f64>>>> {
         let Problem { coefficients, grid, threads, operators, .. } = self;
         operators.whole_if_needed(MadeOf { coefficients, grid, threads }, p)
     }
 
-    /// A for any p, set up at the first call.
+    /// Returns the operator for any p, and sets it up at the first call.
     pub fn operator(&mut self) -> Result<&Arc<Operator<f64>>> {
         let Problem { coefficients, grid, threads, operators, .. } = self;
         operators.whole(MadeOf { coefficients, grid, threads })
     }
 
-    /// The influence of an element on itself.
+    /// The displacement of an element by a unit pressure on itself.
     pub fn self_influence(&self) -> f64 {
         self.coefficients.self_influence()
     }
 
-    /// E* of half-spaces with the kernel's coefficients, if it is that of elastic bodies.
+    /// The modulus E* of half-spaces that have the kernel's influence of an element on itself. For kernels of elastic bodies it is their E*.
     pub fn modulus(&self) -> f64 {
         let kernel = self.coefficients.kernel();
         self.grid.modulus(kernel.at(0, 0) - kernel.constant())
@@ -120,15 +121,15 @@ impl Problem {
 
     /// See [`State::round_off`].
     pub fn round_off(&self) -> f64 {
-        let own = OF_PRODUCT * self.self_influence();
+        let of_element = PRODUCT_ROUND_OFF * self.self_influence();
         match self.coefficients.is_mean_free() {
-            // Displacements by waves of up to the whole grid cancel.
-            true => own * (1.0 + self.grid.mx.max(self.grid.my) as f64 / WAVE_OF_SELF_INFLUENCE),
-            false => own,
+            // The displacements by waves as long as the whole grid cancel in the sum. They grow with the wave's length, and so does their round-off.
+            true => of_element * (1.0 + self.grid.mx.max(self.grid.my) as f64 / WAVE_OF_SELF_INFLUENCE),
+            false => of_element,
         }
     }
 
-    /// `u = A p`.
+    /// Computes `u = A p`.
     pub fn displace(&mut self, p: &[f64], u: &mut [f64]) -> Result<()> {
         let Problem { coefficients, grid, threads, operators, .. } = self;
         operators.displace(MadeOf { coefficients, grid, threads }, p, u)?;
@@ -139,7 +140,7 @@ impl Problem {
         Ok(())
     }
 
-    /// `p = A p`, with the same bits.
+    /// Replaces p by A p, which has the bits that [`displace`](Problem::displace) computes.
     pub fn displace_in_place(&mut self, p: &mut [f64]) -> Result<()> {
         let Problem { coefficients, grid, threads, operators, .. } = self;
         operators.displace_in_place(MadeOf { coefficients, grid, threads }, p)?;
@@ -150,7 +151,7 @@ impl Problem {
         Ok(())
     }
 
-    /// Makes p carry the prescribed force, computes u = A p by a fresh product, and fits the approach to both.
+    /// Makes p admissible and lets it carry a prescribed force, computes u = A p by a fresh product, and fits the approach to h + u.
     pub fn refresh<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Result<()> {
         state.carry_force(set, &self.threads);
         self.displace(&state.p, &mut state.u)?;
@@ -159,12 +160,12 @@ impl Problem {
         Ok(())
     }
 
-    /// Products since the last call.
+    /// Returns the number of products since the last call of this function.
     pub fn take_products(&mut self) -> u64 {
         std::mem::take(&mut self.products)
     }
 
-    /// Gives the memory of products back until the next product.
+    /// Releases the workspace of products until the next product.
     pub fn rest(&mut self) {
         self.operators.rest();
     }
@@ -174,13 +175,13 @@ impl Problem {
         self.operators.bytes_of_whole()
     }
 
-    /// Bytes held.
+    /// Bytes of the operators and of their workspace.
     pub fn bytes(&self) -> usize {
         self.operators.bytes()
     }
 }
 
-/// With two periods the mean of u is 0: removes the mean of a product, which is round-off of sums over the whole grid.
+/// Subtracts the mean of u. In a scene with two periods the exact mean is 0; the mean of a product is round-off of sums over the whole grid.
 fn remove_mean(u: &mut [f64], threads: &Threads) {
     let mut sums = Sums::new();
     sums.add::<f64, 1, 0>([&*u], [], |[u], []| [u]);

@@ -1,10 +1,11 @@
-//! A copy of the result of a state, to restore it.
+//! A copy of a state's pressures, contact area and approach.
 
 use super::State;
 use crate::error::Result;
-use crate::memory::{keep, reserve};
+use crate::memory::{self, reserve};
 
-/// A copy of the result of a state without u, to restore it.
+/// A copy of p, C, the elements at their limit, and the approach of a state. u is not copied: whoever restores the state computes A p anew, or
+/// keeps u elsewhere.
 #[derive(Default)]
 pub struct Snapshot {
     p: Vec<f64>,
@@ -14,30 +15,30 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// Memory for a state; `what`: its name in messages.
+    /// Allocates memory for a copy of `state`. `what` names this memory in messages.
     pub fn reserve(&mut self, state: &State, what: &str) -> Result<()> {
         reserve(&mut self.p, state.p.len(), what)?;
         reserve(&mut self.contact, state.p.len(), what)?;
         Ok(reserve(&mut self.at_limit, state.at_limit.len(), what)?)
     }
 
-    /// Copies the result of a state.
-    pub fn keep(&mut self, state: &State) {
+    /// Copies p, C, the elements at their limit and the approach of `state` into this snapshot.
+    pub fn copy_from(&mut self, state: &State) {
         self.p.clone_from(&state.p);
         self.contact.clone_from(&state.contact);
         self.at_limit.clone_from(&state.at_limit);
         self.approach = state.approach;
     }
 
-    /// Restores the kept result, but not u.
-    pub fn give_back(&self, state: &mut State) {
+    /// Sets `state` to this snapshot, except for u and `u_is`.
+    pub fn restore_to(&self, state: &mut State) {
         state.p.copy_from_slice(&self.p);
         state.contact.copy_from_slice(&self.contact);
         state.at_limit.copy_from_slice(&self.at_limit);
         state.approach = self.approach;
     }
 
-    /// Bytes held.
+    /// Bytes of the copies of p and C; 0 before the first copy.
     pub fn bytes(&self) -> usize {
         self.p.len() * (size_of::<f64>() + size_of::<bool>())
     }
@@ -45,7 +46,7 @@ impl Snapshot {
 
 impl Drop for Snapshot {
     fn drop(&mut self) {
-        keep([&mut self.p]);
-        keep([&mut self.contact, &mut self.at_limit]);
+        memory::keep([&mut self.p]);
+        memory::keep([&mut self.contact, &mut self.at_limit]);
     }
 }

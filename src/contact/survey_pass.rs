@@ -1,4 +1,4 @@
-//! The pass of a survey over the elements of a state.
+//! The loop over the elements of a state that computes a [`Survey`].
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -6,37 +6,38 @@ use std::ops::Range;
 use super::State;
 use crate::blocks::LANES;
 
-/// The measures of one pass over a state whose u is A p.
+/// The measures of a state whose u is A p, as sums, norms and extremes over its elements. The certificate follows from them.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Survey {
     /// 2-norm over C of `e = h - approach + u`.
     pub residual: f64,
-    /// 2-norm over C of `h - approach`, the scale of residuals.
+    /// 2-norm over C of `h - approach`, to which `residual` is relative.
     pub distance: f64,
-    /// rms of `h - approach` over C and the elements at their limit, the scale of violations.
+    /// The rms of `h - approach` over C and the elements at their limit, to which `violation` is relative.
     pub scale: f64,
-    /// Largest `-e` over the exterior area, or e over the elements at their limit; 0 when there is none.
+    /// The largest `-e` in the exterior area or e of an element at its limit, a length. 0 if neither is positive.
     pub violation: f64,
-    /// Elements in contact, free or at their limit.
+    /// The number of elements in C or at their limit.
     pub contact_count: usize,
-    /// Sum of p.
+    /// The sum of p.
     pub pressures: f64,
-    /// Sum of p^2.
+    /// The sum of p^2.
     pub squares: f64,
-    /// Smallest and largest p.
+    /// The smallest p, and the largest p.
     pub range: (f64, f64),
-    /// `sum of p |e|` and `sum of p |u|`; for elements at their limit only e > 0 counts.
+    /// First `sum of p |e|`, to which an element at its limit adds only if e > 0; second `sum of p |u|`.
     pub work: (f64, f64),
 }
 
-/// Elements of a chunk: loops over these are vectorised.
+/// The number of elements in a chunk. Loops over a chunk are vectorised.
 const CHUNK: usize = 64;
 
-/// Sums of e^2 and `(h - approach)^2` over C, and of p, p^2, `p |e|` and `p |u|`, each in one part for each place in a chunk.
+/// The sums of e^2 and `(h - approach)^2` over C, and of p, p^2, `p |e|` and `p |u|` over all elements. Each sum has 64 parts: part k adds up the
+/// elements with number k in their chunk.
 type Parts = [[f64; CHUNK]; 6];
 
-/// Adds elements to the sums of a survey. Elements at their limit add only p and its work; the survey adds the rest. Compiled for the
-/// vectors of this machine, on which no bit depends.
+/// Adds a range of elements to the sums of a survey. Elements at their limit add only their p, p^2, `p |e|` and `p |u|` here;
+/// `Survey::add_limited` adds the rest. The code is compiled for the vector length of this machine, on which no bit depends.
 pub(super) struct Pass<'a> {
     pub state: &'a State,
     pub elements: Range<usize>,
@@ -76,8 +77,8 @@ impl pulp::NullaryFnOnce for Pass<'_> {
     }
 }
 
-/// Whether any element penetrates, and whether any is in contact or has a pressure. In most chunks none penetrates, in many none is in
-/// contact. Signs and zeros are tested as bits.
+/// Tells whether any element outside C penetrates (e < 0), and whether any element is in C or has a pressure. In most chunks no element penetrates,
+/// and in many no element is in contact: then the loops for such elements are left out. Signs and zeros are tested as bits, without branches.
 #[inline(always)]
 fn signs(state: &State, elements: Range<usize>) -> (bool, bool) {
     let (h, u) = (&state.h[elements.clone()], &state.u[elements.clone()]);
@@ -91,7 +92,7 @@ fn signs(state: &State, elements: Range<usize>) -> (bool, bool) {
     (penetrates != 0, loaded != 0)
 }
 
-/// Adds at most [`CHUNK`] elements. Returns the number in contact.
+/// Adds at most [`CHUNK`] elements to the sums. Returns the number of elements in C.
 #[inline(always)]
 fn add(state: &State, elements: Range<usize>, sums: &mut Parts) -> u64 {
     let (approach, limited, n) = (state.approach, !state.at_limit.is_empty(), elements.len());
@@ -101,13 +102,14 @@ fn add(state: &State, elements: Range<usize>, sums: &mut Parts) -> u64 {
     for i in 0..n {
         let distance = h[i] - approach;
         let e = distance + u[i];
-        // Distances of elements without a surface are infinite: their bits are cleared.
+        // A product by 0 would make NaN of the infinite distances of elements without a surface. Instead a mask clears the bits of terms that do not
+        // count.
         let (inside, presses) = (u64::from(contact[i]).wrapping_neg(), u64::from(p[i] != 0.0).wrapping_neg());
         rr[i] += f64::from_bits((e * e).to_bits() & inside);
         hh[i] += f64::from_bits((distance * distance).to_bits() & inside);
         pressures[i] += p[i];
         squares[i] += p[i] * p[i];
-        // An element at its limit presses and is not in C: a gap of it counts, a penetration does not. The comparison is false for NaN.
+        // An element at its limit has a pressure but is not in C: e > 0 counts, e < 0 does not. The comparison is false for NaN.
         let gap = if limited && !contact[i] && e < 0.0 { 0.0 } else { e.abs() };
         gaps[i] += f64::from_bits((p[i] * gap).to_bits() & presses);
         energy[i] += f64::from_bits((p[i] * u[i].abs()).to_bits() & presses);
@@ -115,7 +117,7 @@ fn add(state: &State, elements: Range<usize>, sums: &mut Parts) -> u64 {
     contact.iter().map(|inside| u64::from(*inside)).sum()
 }
 
-/// The sum of all parts, by pairwise halving.
+/// Adds up all parts of a sum: the second half is added to the first, and so on.
 #[inline(always)]
 fn total(parts: &mut [f64; CHUNK]) -> f64 {
     let mut n = CHUNK / 2;
@@ -127,7 +129,7 @@ fn total(parts: &mut [f64; CHUNK]) -> f64 {
     parts[0]
 }
 
-/// Updates the least and the greatest value, in lanes.
+/// Updates the smallest and the largest value of each lane by `values`.
 #[inline(always)]
 fn extremes((low, high): &mut ([f64; LANES], [f64; LANES]), values: &[f64]) {
     let (lanes, rest) = pulp::as_arrays::<LANES, f64>(values);
@@ -143,7 +145,7 @@ fn extremes((low, high): &mut ([f64; LANES], [f64; LANES]), values: &[f64]) {
     }
 }
 
-/// The largest `-e` of exterior elements, or 0.
+/// The largest `-e` of exterior elements, or 0 if none is positive.
 #[inline(always)]
 fn deepest(state: &State, elements: Range<usize>) -> f64 {
     let approach = state.approach;

@@ -6,8 +6,8 @@
 //! 4.1  elements with p < 0 leave C; repeated until none leaves
 //! ```
 //!
-//! Below some fifty elements this is faster than an iteration. The loop determines the elements that enter C. If C has more elements, the matrix is
-//! not positive definite, or a pressure would exceed its limit, another method takes over.
+//! With up to 64 elements in C this is faster than an iteration. The solver's loop determines the elements that enter C. Another
+//! method takes over if C has more elements, if the matrix is not positive definite, or if a pressure would exceed its limit.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::{factor, solve};
@@ -22,10 +22,12 @@ use crate::memory::blank;
 use crate::methods::{Change, Policy, Step, Task};
 use crate::scene::Load;
 
-/// The most elements in contact, and in the grid, for which this is faster. Measured: `cargo bench -- dense`.
+/// The largest number of elements in C for which the direct solution is used. Up to it, it is faster than an iteration (`cargo bench -- dense`).
 const MOST_IN_CONTACT: usize = 64;
+/// The largest number of elements of a grid on which the direct solution is used (measured likewise).
 const LARGEST_GRID: usize = 32 * 32;
 
+/// An empty array with room for n values.
 fn room<A>(n: usize) -> Result<Vec<A>> {
     let mut values = Vec::new();
     values.try_reserve_exact(n).map_err(|_| no_memory())?;
@@ -36,24 +38,28 @@ fn no_memory() -> Error {
     Error::OutOfMemory("no memory for the matrix of a direct solution".into())
 }
 
-/// Coefficients, and memory for the most elements in contact.
+/// The direct method: a table of coefficients, and memory for the largest system.
 pub struct Direct {
     grid: Grid,
     coefficients: Coefficients,
-    /// Coefficients at offsets `1 - mx..mx` and `0..my`, x fastest. Filled when first needed.
+    /// The coefficients at the offsets `1 - mx..mx` in x and `0..my` in y, x fastest. Filled when first needed.
     table: Vec<f64>,
+    /// Whether `table` is filled.
     is_filled: bool,
+    /// The elements in C.
     elements: Vec<usize>,
-    /// The elements in contact as runs in rows: the first element and the length of each.
+    /// The elements in C as groups of consecutive elements of a row: the first element and the length of each group.
     runs: Vec<(usize, usize)>,
+    /// The coefficients between the elements in C, column by column; later its Cholesky factor.
     matrix: Vec<f64>,
-    /// One right-hand side, or two (h and 1).
+    /// The right-hand side approach - h, or with a prescribed force the two right-hand sides h and 1. Later the solutions.
     right: Vec<f64>,
+    /// Memory for the factorisation.
     scratch: MemBuffer,
 }
 
 impl Direct {
-    /// The method on a small grid with even coefficients and an inverse. None on other grids.
+    /// Sets up the method. None if the grid is too large, or if the coefficients are not even, depend on the place, or have no inverse.
     pub fn new(coefficients: &Coefficients, grid: &Grid) -> Result<Option<Direct>> {
         let suits = coefficients.is_even(grid) && !coefficients.depends_on_place() && !coefficients.is_mean_free();
         if grid.len() > LARGEST_GRID || !suits {
@@ -73,11 +79,12 @@ impl Direct {
         }))
     }
 
-    /// Bytes held.
+    /// Bytes of the table and of the matrix.
     pub fn bytes(&self) -> usize {
         (self.table.len() + self.matrix.capacity()) * size_of::<f64>()
     }
 
+    /// Fills the table of coefficients.
     fn fill_table(&mut self) {
         let mx = self.grid.mx;
         for (row, ky) in self.table.chunks_exact_mut(2 * mx - 1).zip(0..) {
@@ -87,7 +94,7 @@ impl Direct {
         self.is_filled = true;
     }
 
-    /// Fills the matrix of the elements, column by column. Each run is a piece of a row of the table.
+    /// Fills the matrix column by column. The part of a column that belongs to one group of elements is copied from a row of the table.
     fn fill_matrix(&mut self) {
         if !self.is_filled {
             self.fill_table();
@@ -110,7 +117,8 @@ impl Direct {
         }
     }
 
-    /// Replaces the first right-hand side by p. Returns false on failure.
+    /// Solves for p on C, which replaces the first right-hand side, and sets the approach if the force is prescribed. Returns false if the matrix is
+    /// not positive definite or a pressure is not finite.
     fn solve(&mut self, state: &mut State) -> bool {
         let n = self.elements.len();
         self.fill_matrix();
@@ -147,7 +155,7 @@ impl<S: AdmissibleSet> Step<S> for Direct {
     }
 
     fn policy(&self) -> Policy {
-        // Elements that enter and leave in turn may cycle.
+        // Elements may enter and leave C in an endless cycle. `patience` ends it.
         Policy { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 12, progress: 1.0 }
     }
 

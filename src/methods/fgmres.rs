@@ -1,18 +1,22 @@
-//! Flexible GMRES (Saad 1993), for a field of K numbers per element and a border of K numbers, right-preconditioned.
-//! K is 2 by default: tractions and creepages.
+//! Flexible GMRES (Saad 1993) with right preconditioning, for a system `H x = r`. The unknown x consists of a *field* of K numbers per element and a
+//! *border* of K numbers. K is 2 by default: tractions and creepages.
 //!
-//! `x = sum_j y_j z_j` with `z_j` the preconditioned vectors; the products of the z_j are kept, so that the product of x costs none.
-//! If the preconditioner M is the same linear map for all directions, the z_j need not be kept: `x = M sum_j y_j v_j`, with the basis v. With many
-//! directions the products need not be kept either: x takes one product. A direction then takes a third of the memory ([`Kept`]).
+//! Let `v_j` be the orthonormal basis, and `z_j = M v_j` the vectors preconditioned by M. The solution is `x = sum_j y_j z_j`.
 //!
-//! Vectors and their products are stored in the precision T, double by default; sums and borders are always double. x and its product are consistent
-//! to the precision T. As x is a step, this error is relative to the step, and steps become small.
+//! - The products `A z_j` are kept, so that the product A x costs no further one.
+//! - If M is the same linear map for all j, the z_j need not be kept: `x = M sum_j y_j v_j`.
+//! - With many vectors the products need not be kept either, because A x takes one product only. Then each v_j takes a third of the memory
+//!   ([`Kept`]).
+//!
+//! Vectors and their products are stored in the precision T, double by default. Sums and borders are always double. x and A x are consistent to the
+//! precision T. This error is relative to x, which is a Newton step and becomes small.
 
 use super::fields::{self as passes, dot_one as dot, plus, Fields, Stored};
 use crate::error::Result;
 use crate::threads::Threads;
 
-/// A field and a border: in friction tractions or slips, and creepages or forces; in adhesion pressures, and the approach or the force.
+/// A field and a border. In friction the field holds tractions or slips, and the border creepages or forces. In adhesion the field holds pressures,
+/// and the border the approach or the force.
 pub struct Bordered<const K: usize = 2, T = f64> {
     pub field: Vec<[T; K]>,
     pub border: [f64; K],
@@ -24,36 +28,36 @@ impl<const K: usize, T> Default for Bordered<K, T> {
     }
 }
 
-/// One direction: the preconditioned vector, and the product of its field with A.
+/// A preconditioned vector z, and the product of A with its field.
 #[derive(Default)]
 pub struct Direction<const K: usize = 2, T = f64> {
     pub z: Bordered<K, T>,
     pub product: Vec<[T; K]>,
 }
 
-/// A direction, and `H` of it.
+/// A direction z, and `H z`.
 pub type Turned<const K: usize, T> = (Direction<K, T>, Bordered<K, T>);
 
-/// The fields kept for each direction, in addition to the basis.
+/// Which fields are kept for each direction, in addition to the basis vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kept {
     /// Preconditioned vectors and their products.
     All,
-    /// The product alone, up to this number of directions; none beyond.
+    /// The products alone, if there are at most this number of directions; otherwise none.
     Products(usize),
 }
 
 /// The system `H x = r`.
 pub trait System<const K: usize = 2, T: Stored = f64> {
-    /// A preconditioned vector, its product with A, and `H` of it.
+    /// Computes the preconditioned vector `z = M v`, the product of A with its field, and `H z`.
     fn direction(&mut self, v: &Bordered<K, T>, fields: &mut Fields<K>) -> Result<Turned<K, T>>;
 
-    /// The fields kept. A system may keep fewer than all if its preconditioner is the same linear map for each direction.
+    /// Which fields are kept. A system may keep fewer than all if its preconditioner is the same linear map for each direction.
     fn kept(&self) -> Kept {
         Kept::All
     }
 
-    /// A preconditioned vector, with its product if that `is_multiplied`.
+    /// Computes the preconditioned vector `M v`, and its product with A only if `is_multiplied`.
     fn again(&mut self, v: &Bordered<K, T>, is_multiplied: bool, fields: &mut Fields<K>) -> Result<Direction<K, T>> {
         let (mut direction, row) = self.direction(v, fields)?;
         fields.give_of(row.field);
@@ -64,38 +68,41 @@ pub trait System<const K: usize = 2, T: Stored = f64> {
     }
 }
 
-/// The solution as sums of fields with factors.
+/// The solution x and its product, as linear combinations of stored fields.
 pub struct Combination<const K: usize = 2, T = f64> {
-    /// The sum of these is x.
+    /// x is the sum of these vectors times their factors.
     pub vectors: Vec<(f64, Bordered<K, T>)>,
-    /// The sum of these is the product of its field.
+    /// The product of A with the field of x is `unit` times the sum of these fields times their factors.
     pub products: Vec<(f64, Vec<[T; K]>)>,
-    /// The unit of stored products.
+    /// The unit in which `products` are stored.
     pub unit: f64,
-    /// The norm of the residual, relative to that of r.
+    /// The norm of the residual, relative to the norm of r.
     pub left: f64,
-    /// Number of directions.
+    /// The number of directions.
     pub count: usize,
 }
 
-/// The triangular system of the coefficients.
+/// The triangular system for the factors y.
 #[derive(Default)]
 struct Triangle {
+    /// The columns of the Hessenberg matrix after Givens rotations, which make it upper triangular.
     columns: Vec<Vec<f64>>,
+    /// Cosine and sine of each rotation.
     rotations: Vec<(f64, f64)>,
-    rest: Vec<f64>,
+    /// The right-hand side after the rotations. Its last value is the norm of the residual, up to the sign.
+    right: Vec<f64>,
 }
 
 /// The stopping criteria.
 #[derive(Clone, Copy, Debug)]
 pub struct Until {
-    /// Residual at which a solve stops.
+    /// The norm of the residual at which the solve stops.
     pub target: f64,
-    /// Most directions.
+    /// The largest number of directions.
     pub most: usize,
 }
 
-/// Solves `H x = r`; `weight`: the weight of borders in the inner product.
+/// Solves `H x = r`. In the inner product, borders have the weight `weight` relative to fields.
 pub fn solve<const K: usize, T: Stored>(
     system: &mut dyn System<K, T>,
     r: Bordered<K>,
@@ -111,7 +118,7 @@ pub fn solve<const K: usize, T: Stored>(
     }
     let field = T::stored(threads, r.field, 1.0 / norm, fields)?;
     let mut basis = vec![Bordered { field, border: r.border.map(|value| 1.0 / norm * value) }];
-    let mut triangle = Triangle { rest: vec![norm], ..Triangle::default() };
+    let mut triangle = Triangle { right: vec![norm], ..Triangle::default() };
     let (kept, mut directions) = (system.kept(), Vec::new());
     while triangle.columns.len() < most && norm > target {
         let (direction, mut w) = system.direction(&basis[basis.len() - 1], fields)?;
@@ -125,7 +132,7 @@ pub fn solve<const K: usize, T: Stored>(
             directions.pop().into_iter().for_each(|direction| direction.give(fields));
             break;
         }
-        norm = triangle.rest[triangle.columns.len()].abs();
+        norm = triangle.right[triangle.columns.len()].abs();
     }
     let y = triangle.solve();
     let found = match kept {
@@ -137,7 +144,7 @@ pub fn solve<const K: usize, T: Stored>(
 }
 
 impl Kept {
-    /// After a new direction, the last: gives the fields that are not kept back to the pool.
+    /// Returns the fields that are not kept to the pool. Called after each new direction, which is the last of `directions`.
     fn forget<const K: usize, T: Stored>(self, directions: &mut [Direction<K, T>], fields: &mut Fields<K>) {
         let Kept::Products(most) = self else { return };
         let count = directions.len();
@@ -151,7 +158,7 @@ impl Kept {
     }
 }
 
-/// The solution from the basis, by one more preconditioned vector, and one more product if products are not kept.
+/// Computes the solution from the basis: by one more application of the preconditioner, and by one more product if products are not kept.
 fn again<const K: usize, T: Stored>(
     system: &mut dyn System<K, T>,
     basis: &[Bordered<K, T>],
@@ -173,7 +180,7 @@ fn again<const K: usize, T: Stored>(
     Ok(Combination { vectors: vec![(1.0, z)], products, unit: 1.0, left: 1.0, count: y.len() })
 }
 
-/// Orthogonalises w against the basis by modified Gram-Schmidt. Returns the coefficients, and the norm of the rest.
+/// Orthogonalises w against the basis by the modified Gram-Schmidt method. Returns the coefficients, and the norm of what is left of w.
 fn orthogonalise<const K: usize, T: Stored>(
     threads: &Threads,
     w: &mut Bordered<K, T>,
@@ -192,13 +199,14 @@ fn orthogonalise<const K: usize, T: Stored>(
     (column, (along + weight * dot(&w.border, &w.border)).sqrt())
 }
 
+/// Multiplies field and border by a.
 fn scale<const K: usize, T: Stored>(threads: &Threads, v: &mut Bordered<K, T>, a: f64) {
     passes::scale(threads, &mut v.field, a);
     v.border = v.border.map(|value| a * value);
 }
 
 impl<const K: usize, T: Stored> Direction<K, T> {
-    /// Gives the fields back to the pool.
+    /// Returns the fields to the pool.
     fn give(self, fields: &mut Fields<K>) {
         [self.z.field, self.product]
             .into_iter()
@@ -208,14 +216,14 @@ impl<const K: usize, T: Stored> Direction<K, T> {
 }
 
 impl<const K: usize, T: Stored> Combination<K, T> {
-    /// The combination of directions with factors y.
+    /// The linear combination of the directions with the factors y.
     fn of(directions: Vec<Direction<K, T>>, y: &[f64]) -> Combination<K, T> {
         let (vectors, products) =
             directions.into_iter().zip(y).map(|(direction, y)| ((*y, direction.z), (*y, direction.product))).unzip();
         Combination { vectors, products, unit: 1.0, left: 1.0, count: y.len() }
     }
 
-    /// Adds x to `to`, and the product of its field to `product`; returns the fields.
+    /// Adds x to `to`, and the product of A with the field of x to `product`. The fields go back to the pool.
     pub fn add_to<S: Stored>(
         self,
         to: &mut Bordered<K, S>,
@@ -235,7 +243,8 @@ impl<const K: usize, T: Stored> Combination<K, T> {
 }
 
 impl Triangle {
-    /// Rotates a column into the triangle, `below` its element below the diagonal. False: the direction is dependent.
+    /// Adds a column of the Hessenberg matrix, whose element below the diagonal is `below`, by rotations. Returns false, and adds nothing, if the
+    /// triangle would become singular or a value is not finite.
     fn add(&mut self, mut column: Vec<f64>, below: f64) -> bool {
         let k = column.len() - 1;
         for (i, &(c, s)) in self.rotations.iter().enumerate() {
@@ -249,14 +258,15 @@ impl Triangle {
         column[k] = diagonal;
         self.rotations.push((c, s));
         self.columns.push(column);
-        let last = self.rest[k];
-        self.rest[k] = c * last;
-        self.rest.push(-s * last);
+        let last = self.right[k];
+        self.right[k] = c * last;
+        self.right.push(-s * last);
         true
     }
 
+    /// Computes the factors y by back substitution.
     fn solve(&self) -> Vec<f64> {
-        let mut y = self.rest[..self.columns.len()].to_vec();
+        let mut y = self.right[..self.columns.len()].to_vec();
         for i in (0..y.len()).rev() {
             y[i] /= self.columns[i][i];
             let value = y[i];

@@ -1,5 +1,5 @@
-//! Passes over fields of K numbers per element, in double or single precision, by several threads: sums are taken in double precision, in
-//! blocks of fixed length and order, so that they have the same bits for any number of threads.
+//! Loops over fields of K numbers per element, in double or single precision, by several threads. Sums are taken in double precision, over blocks of
+//! fixed length and in fixed order. So they have the same bits for any number of threads.
 
 pub use crate::blocks::BLOCK;
 use crate::error::Result;
@@ -8,24 +8,26 @@ use crate::operator::fft::Real;
 use crate::sums::Sums;
 use crate::threads::Threads;
 
-/// A pool of fields of one length, by default of vectors in the plane.
+/// A pool of unused fields, which the next fields reuse. K is the number of values per element, by default 2 (vectors in the plane).
 #[derive(Default)]
 pub struct Fields<const K: usize = 2> {
+    /// Unused fields in double precision.
     free: Vec<Vec<[f64; K]>>,
+    /// Unused fields in single precision.
     single: Vec<Vec<[f32; K]>>,
-    /// The threads that first touch new fields. The system clears a page when it is first touched.
+    /// The threads that first touch new fields: the system clears each page when it is first touched, and threads do that in parallel.
     threads: Threads,
 }
 
-/// The precision of stored fields.
+/// A precision in which fields are stored.
 pub trait Stored: Real {
     /// Round-off of products and storage, relative to the largest value of a solution.
     const ROUND_OFF: f64;
 
-    /// The fields of this precision in a pool.
+    /// The unused fields of this precision in a pool.
     fn of_pool<const K: usize>(fields: &mut Fields<K>) -> &mut Vec<Vec<[Self; K]>>;
 
-    /// A field times a factor in this precision; a field no longer needed goes back to the pool.
+    /// Returns `factor` times `field` in this precision. If `field` is then no longer needed, it goes back to the pool.
     fn stored<const K: usize>(
         threads: &Threads,
         field: Vec<[f64; K]>,
@@ -73,47 +75,48 @@ impl Stored for f32 {
 }
 
 impl<const K: usize> Fields<K> {
-    /// An empty pool, whose new fields are first touched by these threads together.
+    /// Creates an empty pool. Its new fields are first touched by these threads.
     pub fn touched_by(threads: &Threads) -> Fields<K> {
         Fields { threads: threads.clone(), ..Fields::default() }
     }
 
-    /// A field of n elements with undefined values.
+    /// Takes a field of n elements in double precision from the pool, or allocates it. Its values are undefined.
     pub fn take(&mut self, n: usize) -> Result<Vec<[f64; K]>> {
         self.take_of(n)
     }
 
-    /// Takes a field back.
+    /// Returns a field in double precision to the pool.
     pub fn give(&mut self, field: Vec<[f64; K]>) {
         self.give_of(field);
     }
 
-    /// A field of some precision.
+    /// Takes a field of n elements in the precision T from the pool, or allocates it. Its values are undefined.
     pub fn take_of<T: Stored>(&mut self, n: usize) -> Result<Vec<[T; K]>> {
         let mut field = T::of_pool(self).pop().unwrap_or_default();
         unwritten(&mut field, n, [T::nan(); K], "the iteration of Newton's method", &self.threads)?;
         Ok(field)
     }
 
-    /// A field of zeros.
+    /// Takes a field from the pool, or allocates it, and sets it to 0.
     pub fn zeros<T: Stored>(&mut self, n: usize, threads: &Threads) -> Result<Vec<[T; K]>> {
         let mut field = self.take_of(n)?;
         fill(threads, &mut field, |_| [T::zero(); K]);
         Ok(field)
     }
 
-    /// Takes a field of some precision back.
+    /// Returns a field in the precision T to the pool.
     pub fn give_of<T: Stored>(&mut self, field: Vec<[T; K]>) {
         T::of_pool(self).push(field);
     }
 
-    /// Frees the fields of fewer than n elements. A field of n elements is then newly allocated instead of enlarged.
+    /// Frees the unused fields with room for fewer than n elements. A field of n elements is then allocated anew, which is cheaper than to enlarge
+    /// one.
     pub fn leave_smaller(&mut self, n: usize) {
         self.free.retain(|field| field.capacity() >= n);
         self.single.retain(|field| field.capacity() >= n);
     }
 
-    /// Bytes held.
+    /// Bytes of the unused fields.
     pub fn bytes(&self) -> usize {
         bytes_of(&self.free) + bytes_of(&self.single)
     }
@@ -123,7 +126,7 @@ fn bytes_of<T>(fields: &[Vec<T>]) -> usize {
     fields.iter().map(|field| field.capacity() * size_of::<T>()).sum()
 }
 
-/// `v . w`.
+/// The inner product `v . w`.
 pub fn dot<const K: usize, T: Real>(threads: &Threads, v: &[[T; K]], w: &[[T; K]]) -> f64 {
     let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
     threads.for_each_plain_row(&mut sums, 1, |k, sum| {
@@ -133,7 +136,7 @@ pub fn dot<const K: usize, T: Real>(threads: &Threads, v: &[[T; K]], w: &[[T; K]
     sums.iter().sum()
 }
 
-/// `to += a v`, and then `to . w`; without w `to . to`.
+/// Adds `a v` to `to`, and returns the inner product of the new `to` with `w`, or with itself if `w` is None.
 pub fn add_and_dot<const K: usize, T: Real>(
     threads: &Threads,
     to: &mut [[T; K]],
@@ -150,7 +153,7 @@ pub fn add_and_dot<const K: usize, T: Real>(
     sums.iter().sum()
 }
 
-/// `to += sum of a_j v_j`, in one pass.
+/// Adds `sum of a_j v_j` to `to`, in one loop over the elements.
 pub fn add_all<const K: usize, S: Real, T: Real>(threads: &Threads, to: &mut [[S; K]], terms: &[(f64, &[[T; K]])]) {
     threads.for_each_plain_row(to, BLOCK, |k, to| {
         for (a, v) in terms {
@@ -160,14 +163,14 @@ pub fn add_all<const K: usize, S: Real, T: Real>(threads: &Threads, to: &mut [[S
     });
 }
 
-/// `to *= a`.
+/// Multiplies `to` by a.
 pub fn scale<const K: usize, T: Real>(threads: &Threads, to: &mut [[T; K]], a: f64) {
     threads.for_each_plain_row(to, BLOCK, |_, to| {
         to.iter_mut().for_each(|to| *to = to.map(|value| T::of(a * value.to_double())));
     });
 }
 
-/// `to = f(i, to)` for each element i.
+/// Sets `to = f(i, to)` for each element i.
 pub fn map<const K: usize, T: Real>(
     threads: &Threads,
     to: &mut [[T; K]],
@@ -178,14 +181,14 @@ pub fn map<const K: usize, T: Real>(
     });
 }
 
-/// `to = f(i)` for each element i.
+/// Sets `to = f(i)` for each element i.
 pub fn fill<const K: usize, T: Real>(threads: &Threads, to: &mut [[T; K]], f: impl Fn(usize) -> [T; K] + Sync + Send) {
     threads.for_each_plain_row(to, BLOCK, |k, to| {
         to.iter_mut().enumerate().for_each(|(i, to)| *to = f(k * BLOCK + i));
     });
 }
 
-/// `(a, b) = f(i)` for each element i, in one pass.
+/// Sets `(a, b) = f(i)` for each element i, in one loop over the elements.
 pub fn fill_both<const K: usize, T: Real>(
     threads: &Threads,
     (a, b): (&mut [[T; K]], &mut [[T; K]]),
@@ -198,7 +201,7 @@ pub fn fill_both<const K: usize, T: Real>(
     });
 }
 
-/// The sums of f over n elements.
+/// The K sums of `f(i)` over n elements.
 pub fn sum<const K: usize>(threads: &Threads, n: usize, f: impl Fn(usize) -> [f64; K] + Sync + Send) -> [f64; K] {
     let add = |sums: [f64; K], terms: [f64; K]| std::array::from_fn(|k| sums[k] + terms[k]);
     let mut sums = vec![[0.0; K]; n.div_ceil(BLOCK)];
@@ -208,7 +211,7 @@ pub fn sum<const K: usize>(threads: &Threads, n: usize, f: impl Fn(usize) -> [f6
     sums.into_iter().fold([0.0; K], add)
 }
 
-/// The largest value of f over n elements, or 0.
+/// The largest `f(i)` over n elements, or 0 if none is positive.
 pub fn largest(threads: &Threads, n: usize, f: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
     let mut largest = vec![0.0; n.div_ceil(BLOCK)];
     threads.for_each_plain_row(&mut largest, 1, |k, largest| {
@@ -217,7 +220,7 @@ pub fn largest(threads: &Threads, n: usize, f: impl Fn(usize) -> f64 + Sync + Se
     largest.into_iter().fold(0.0, f64::max)
 }
 
-/// Calls `work(first element, block)` on each block of several fields, and adds up the results.
+/// Calls `work(first element, block)` for each block of elements, and adds up the results. A block has the parts of several fields.
 pub fn over<B: Send, const K: usize>(
     threads: &Threads,
     blocks: impl Iterator<Item = B>,
@@ -233,7 +236,7 @@ pub fn over<B: Send, const K: usize>(
     blocks.into_iter().map(|(_, sums)| sums).fold([0.0; K], added)
 }
 
-/// `v . w` of a block, in four sums: one sum would wait for each addition.
+/// The inner product `v . w` over one block, in several partial sums: in a single sum each addition would wait for the one before.
 #[inline(always)]
 fn dot_of_block<const K: usize, T: Real>(v: &[[T; K]], w: &[[T; K]]) -> f64 {
     let mut sums = Sums::new();
@@ -242,19 +245,19 @@ fn dot_of_block<const K: usize, T: Real>(v: &[[T; K]], w: &[[T; K]]) -> f64 {
     sum
 }
 
-/// `v . w` of one element.
+/// The inner product `v . w` of one element's values.
 #[inline]
 pub fn dot_one<const K: usize>(v: &[f64; K], w: &[f64; K]) -> f64 {
     (1..K).fold(v[0] * w[0], |sum, k| sum + v[k] * w[k])
 }
 
-/// `v + a w` of one element.
+/// `v + a w` for one element.
 #[inline]
 pub fn plus<const K: usize>(v: [f64; K], a: f64, w: [f64; K]) -> [f64; K] {
     std::array::from_fn(|k| v[k] + a * w[k])
 }
 
-/// `v + a w` of one element, in the precision of v.
+/// `v + a w` for one element, in the precision of v.
 #[inline(always)]
 fn plus_of<const K: usize, S: Real, T: Real>(v: [S; K], a: f64, w: [T; K]) -> [S; K] {
     std::array::from_fn(|k| S::of(v[k].to_double() + a * w[k].to_double()))

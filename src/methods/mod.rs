@@ -1,4 +1,5 @@
-//! The methods, each a [`Step`] of the solver's loop, and what several of them use: `extension`, `fgmres`, `fields`.
+//! The methods of solution. Each implements [`Step`], which the solver's loop calls. `extension`, `fgmres` and `fields` are tools that several
+//! methods share.
 
 pub mod direct;
 pub mod extension;
@@ -15,7 +16,7 @@ pub use task::Task;
 use crate::contact::{AdmissibleSet, State};
 use crate::error::Result;
 
-/// The start of a solve.
+/// The pressures from which a solve starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// p = 0.
@@ -26,45 +27,46 @@ pub enum Start {
     Previous,
 }
 
-/// One step of a method, between two steps of the active set.
+/// One step of a method. Between two such steps the loop exchanges elements by steps (4.1) and (4.2).
 pub trait Step<S: AdmissibleSet> {
-    /// The name in messages.
+    /// The method's name in messages.
     fn name(&self) -> &'static str;
 
-    /// Prepares for `state`: allocates memory and discards the last solve.
+    /// Prepares a solve of `state`: allocates memory and discards what the last solve left.
     fn begin(&mut self, _state: &State) -> Result<()> {
         Ok(())
     }
 
-    /// Changes p, and sets the freshness `state.u_is` of u.
+    /// Changes p, and sets `state.u_is` to how accurately u then equals A p.
     fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change>;
 
-    /// The conditions under which the loop gives the method up, or accepts a state although elements change sides.
+    /// The conditions under which the loop gives this method up, or accepts a state although elements still enter or leave C.
     fn policy(&self) -> Policy;
 }
 
-/// The measures of one step.
+/// What one step has changed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Change {
     /// rms over C of the change of p; infinite if the step has no such measure of convergence.
     pub update: f64,
-    /// Elements that the step itself moved into or out of C.
+    /// The number of elements that the step itself moved into or out of C.
     pub changes: u64,
     /// Whether the step can make no more progress on this scene.
     pub gives_up: bool,
 }
 
-/// The policy of the loop for a method.
+/// The rules by which the loop treats a method.
 #[derive(Clone, Copy, Debug)]
 pub struct Policy {
-    /// Whether the loop makes steps (4.1) and (4.2). NORM makes its own step 3, at once and before the next solve.
+    /// Whether the loop exchanges elements by steps (4.1) and (4.2). If not, the method does (NORM in its step 3, before the next inner solve).
     pub exchanged_by_loop: bool,
-    /// Whether the loop counts each step as a cycle. Other methods count their own iterations.
+    /// Whether the loop counts each step as a cycle. If not, the method counts its own iterations.
     pub step_is_cycle: bool,
-    /// Steps in which the certificate holds but elements still change sides, after which the certificate decides.
+    /// The number of steps in which the certificate may hold while elements still enter or leave C. After more such steps the certificate alone
+    /// decides.
     pub chatter: u32,
-    /// Steps without progress after which the method is given up.
+    /// The method is given up after more than this number of steps without progress.
     pub patience: u32,
-    /// Part of the least violation so far below which a violation is progress.
+    /// A step makes progress if its violation is below this part of the smallest violation so far.
     pub progress: f64,
 }

@@ -1,41 +1,41 @@
-//! A problem on one grid and its goal.
+//! A problem on one grid, its unknowns, and the goal of its solution.
 
 use crate::contact::{AdmissibleSet, Problem, State, Survey};
 use crate::progress::{Goal, Monitor};
 
-/// A problem on one grid and its goal.
+/// A problem on one grid, its unknowns, and the goal of its solution.
 pub struct Task<'a, 'm, S> {
-    /// The grid and the operator.
+    /// The grid, the influence coefficients and the operator.
     pub problem: &'a mut Problem,
-    /// The unknowns.
+    /// The unknowns, and the undeformed distance.
     pub state: &'a mut State,
-    /// The least undeformed distance of the state; infinite if there is no surface.
+    /// The smallest undeformed distance; infinite if all elements are excluded.
     pub lowest: f64,
-    /// The admissible pressures.
+    /// The set of admissible pressures.
     pub set: S,
-    /// The goal.
+    /// The tolerance, the criterion and the largest number of cycles.
     pub goal: Goal,
-    /// Counts products and reports progress.
+    /// Counts products and cycles, reports progress, and asks whether the caller cancels.
     pub monitor: &'a mut Monitor<'m>,
 }
 
 impl<S: AdmissibleSet> Task<'_, '_, S> {
-    /// Whether p carries a prescribed force.
+    /// Whether p carries the prescribed force up to round-off. True if the approach is prescribed.
     pub fn carries(&self) -> bool {
         self.state.carries(&self.problem.threads)
     }
 
-    /// A survey of the state, by the threads of the solve.
+    /// Computes the survey of the state, with the threads of the solve.
     pub fn survey(&self) -> Survey {
         Survey::by(self.state, &self.problem.threads)
     }
 
-    /// Whether the caller cancelled, or no cycle is left.
+    /// Whether the caller has cancelled the solve, or all cycles are used up.
     pub fn is_interrupted(&self) -> bool {
         self.monitor.is_cancelled() || self.monitor.count.cycles >= self.goal.max_cycles
     }
 
-    /// Counts the products on this grid since the last call.
+    /// Adds the products on this grid since the last call to the monitor's count.
     pub fn count_products(&mut self) {
         self.monitor.count_products(self.problem.take_products(), self.problem.work);
     }

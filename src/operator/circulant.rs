@@ -1,7 +1,7 @@
 //! The inverse of a circulant near A, as a preconditioner (Strang 1986, T. Chan 1988).
 //!
-//! The period is at least one element longer than the grid, so that the coefficient at offset -m is the true one. In a periodic direction it is the length
-//! of the grid, in a direction with one element 1. A product costs a quarter of one with padding, and the number of iterations is the same.
+//! The period of the circulant is at least one element longer than the grid. In a periodic direction it is the length of the grid, in a direction
+//! with one element it is 1. A product by the inverse costs a quarter of one with the padding of A, and the number of iterations is the same.
 
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,14 +17,14 @@ use crate::influence::Coefficients;
 use crate::threads::Threads;
 
 impl<T: Real> Operator<T> {
-    /// The period of a preconditioner's circulant.
+    /// The period of the circulant of a preconditioner, in x and in y.
     pub fn circulant_period(coefficients: &Coefficients, grid: &Grid) -> (usize, usize) {
         let (px, py) = even_periods(coefficients, grid, (grid.mx + 1, grid.my + 1));
         (if grid.mx == 1 { 1 } else { px }, if grid.my == 1 { 1 } else { py })
     }
 
-    /// The inverse of a circulant near A with the `period`. The circulant has the even part of the coefficients at offsets up to half the period.
-    /// None if it is not positive definite.
+    /// Sets up the inverse of a circulant near A. The circulant has the given `period`, and the even part of the coefficients at offsets up to half
+    /// the period. None if the circulant is not positive definite.
     pub fn inverse_circulant(
         coefficients: &Coefficients,
         grid: &Grid,
@@ -61,11 +61,11 @@ impl<T: Real> Operator<T> {
     }
 }
 
-/// The uniform pressure gets the response of a wave with this part of the smallest wave number: it represents all waves longer than the
-/// period. Measured.
+/// The inverse treats a uniform pressure like a wave with this part of the smallest wave number: it represents all waves longer than the period. The
+/// value comes from measurements.
 const MEAN_WAVE: f64 = 0.45;
 
-/// The response to the wave with bin `(x, y)`.
+/// The displacement by the wave of pressure with bin `(x, y)`, relative to the pressure.
 fn wave_of(coefficients: &Coefficients, grid: &Grid, (px, py): (usize, usize), (x, y): (usize, usize)) -> f64 {
     let number = |bin: usize, p: usize, d: f64| 2.0 * PI * bin as f64 / (p as f64 * d);
     let (mut kx, ky) = (number(x, px, grid.dx), number(y, py, grid.dy));

@@ -1,12 +1,13 @@
-//! The matrix of small systems that are factorised.
+//! The entries of A between given elements, for small systems that are factorised.
 
 use crate::grid::Grid;
 
-/// The matrix of the elements `elements`, column by column, from the coefficients `coefficient(x, y)` of offsets.
+/// Fills `matrix`, column by column, with the influence coefficients between `elements`. `coefficient(kx, ky)` is that of an offset.
 pub fn fill_matrix(grid: &Grid, elements: &[usize], coefficient: impl Fn(i64, i64) -> f64, matrix: &mut Vec<f64>) {
     matrix.clear();
     matrix.reserve(elements.len() * elements.len());
-    // Divisions dominate the time: there is one for each column and row of elements, not for each pair.
+    // Divisions would dominate the time. So there is one for each column, and one for each row of the grid in it, but not one for each pair of
+    // elements.
     for &j in elements {
         let (mut row, mut end) = (0, grid.mx);
         let (jx, jy) = ((j % grid.mx) as i64, (j / grid.mx) as i64);

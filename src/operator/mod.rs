@@ -1,4 +1,4 @@
-//! The operator of the contact problem: `u = A p`.
+//! The operator of the contact problem, `u = A p`: products by FFT, and the inverse of a circulant as a preconditioner.
 
 mod circulant;
 pub mod dense;
@@ -16,14 +16,14 @@ pub use toeplitz::fft::{length_for_stages, row_transform};
 pub use toeplitz::SetUp;
 pub use workspace::{Needs, Workspace};
 
-/// Arithmetic of the inner work; results are always computed in double precision.
+/// The precision of the iteration inside a method. Results and certificates are always computed in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
-    /// Whichever is faster.
+    /// The precision that is faster.
     #[default]
     Auto,
     /// Double precision throughout.
     Double,
-    /// Single precision for inner work, in the methods that support it.
+    /// Single precision for the iteration, in the methods that support it.
     Mixed,
 }

@@ -1,8 +1,7 @@
-//! `u = A p`: a product by FFT, with the diagonal and the coupling of the coefficients, if any.
+//! The operator `u = A p`: a product by FFT, with the diagonal (of a layer) and the coupling between patches, if the coefficients have them.
 //!
-//! A is block Toeplitz, so it is a part of a block circulant, of the period that [`periods`](super::periods) chooses.
-//!
-//! The products are those of the crate toeplitz. The diagonal is added while they are transformed back.
+//! A is block Toeplitz, so it is a part of a block circulant, whose period module [`periods`](super::periods) chooses. The crate toeplitz multiplies
+//! by the circulant. The diagonal is added while the product is transformed back.
 
 use std::iter::once;
 
@@ -17,34 +16,34 @@ use crate::influence::{Coefficients, Patches};
 use crate::memory::{computed, reserve};
 use crate::threads::Threads;
 
-/// The name of this memory in messages.
+/// The name of the memory of the diagonal in messages.
 const DIAGONAL: &str = "the operator's diagonal";
 
-/// The operator of one grid.
+/// The operator A of one grid, with the precision T for products.
 pub struct Operator<T: Real> {
     product: Product<T>,
-    /// Products are right for pressures within this reach. Only even coefficients use it.
+    /// Products are right for pressures within this reach. It is smaller than the grid only if the coefficients are even.
     reach: Reach,
-    /// The diagonal of A beyond the coefficients; empty if there is none.
+    /// The diagonal that is added to the block Toeplitz matrix. Empty if there is none.
     diagonal: Vec<T>,
     /// The patches, with the factors on A between them.
     coupling: Option<Patches>,
 }
 
 impl<T: Real> Operator<T> {
-    /// Sets up products on `grid`; the symbol is computed in double precision for either `T`.
+    /// Sets up the operator on `grid` for any p. The symbol is computed in double precision, whatever T is.
     pub fn new(coefficients: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
         Operator::scaled(coefficients, 1.0, grid, threads)
     }
 
-    /// The operator of coefficients times `factor`, a power of two, which changes no digit.
+    /// Sets up the operator of the coefficients times `factor`. A power of two changes no digit.
     pub fn scaled(coefficients: &Coefficients, factor: f64, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
         let mut operator = Operator::of_period(grid, periods(coefficients, grid, full_reach(grid)), threads)?;
         operator.renew(coefficients, factor, grid, &mut SetUp::default())?;
         Ok(operator)
     }
 
-    /// The operator for pressures within a reach.
+    /// Sets up the operator for pressures within a reach.
     pub fn within(reach: Reach, coefficients: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
         let mut operator = Operator::of_period(grid, periods(coefficients, grid, reach), threads)?;
         operator.reach = reach;
@@ -52,17 +51,17 @@ impl<T: Real> Operator<T> {
         Ok(operator)
     }
 
-    /// See [`Reach`].
+    /// The reach of the pressures for which products are right.
     pub fn reach(&self) -> Reach {
         self.reach
     }
 
-    /// Plans of a period; the symbol is still to be computed.
+    /// An operator with the given period, whose symbol is still to be computed.
     fn of_period(grid: &Grid, period: (usize, usize), threads: &Threads) -> Result<Operator<T>> {
         Ok(Operator::by(Product::new((grid.mx, grid.my), period, threads)?, grid))
     }
 
-    /// The operator of a product, without diagonal and coupling.
+    /// The operator that multiplies by `product`, without a diagonal and a coupling.
     pub(super) fn by(product: Product<T>, grid: &Grid) -> Operator<T> {
         Operator { product, reach: full_reach(grid), diagonal: Vec::new(), coupling: None }
     }
@@ -72,8 +71,8 @@ impl<T: Real> Operator<T> {
         self.product.threads()
     }
 
-    /// Replaces the coefficients by others, times a factor, on the same `grid`. Keeps plans and memory if they fit. After an error the operator must
-    /// be renewed before use.
+    /// Replaces the coefficients by others, times a factor, on the same `grid`. Plans and memory are kept if they fit. After an error, `renew` must
+    /// succeed before the operator is used.
     pub fn renew(&mut self, coefficients: &Coefficients, factor: f64, grid: &Grid, set_up: &mut SetUp) -> Result<()> {
         let (period, threads) = (periods(coefficients, grid, self.reach), self.threads().clone());
         let elements = (grid.mx, grid.my);
@@ -100,41 +99,41 @@ impl<T: Real> Operator<T> {
         Ok(())
     }
 
-    /// The same operator in another precision, times a factor.
+    /// Returns the same operator in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Operator<S>> {
         let diagonal = computed(self.diagonal.iter().map(|d| S::of(factor * d.to_double())), DIAGONAL)?;
         let (product, coupling) = (self.product.in_precision(factor)?, self.coupling.clone());
         Ok(Operator { product, reach: self.reach, diagonal, coupling })
     }
 
-    /// Memory for products by this operator.
+    /// Allocates memory for products by this operator.
     pub fn workspace(&self) -> Result<Workspace<T>> {
         Workspace::new(once(self))
     }
 
-    /// Elements of the grid.
+    /// The number of elements of the grid.
     pub fn elements(&self) -> usize {
         let (mx, my) = self.product.grid();
         mx * my
     }
 
-    /// Whether A has a diagonal beyond the coefficients.
+    /// Whether a diagonal is added to the block Toeplitz matrix.
     pub fn has_diagonal(&self) -> bool {
         !self.diagonal.is_empty()
     }
 
-    /// Bytes held by the operator.
+    /// Bytes of the symbol and of the diagonal.
     pub fn bytes(&self) -> usize {
         self.product.bytes() + size_of_val(&self.diagonal[..])
     }
 
-    /// The sizes of the memory of products. Operators with the same needs can share a workspace.
+    /// The sizes of the memory that products need. Operators with the same needs can share a workspace.
     pub fn needs(&self) -> Needs {
         let masked = self.coupling.as_ref().map_or(0, |_| self.elements());
         Needs { room: self.product.room(), masked }
     }
 
-    /// `u = A p`.
+    /// Computes `u = A p`.
     pub fn apply(&self, p: &[T], u: &mut [T], workspace: &mut Workspace<T>) {
         let Workspace { memory, masked, .. } = workspace;
         if let Some(patches) = &self.coupling {
@@ -144,7 +143,7 @@ impl<T: Real> Operator<T> {
         self.back(p, u, memory);
     }
 
-    /// `p = A p`.
+    /// Replaces p by A p.
     pub fn apply_in_place(&self, p: &mut [T], workspace: &mut Workspace<T>) {
         let Workspace { memory, masked, given } = workspace;
         if let Some(patches) = &self.coupling {
@@ -162,7 +161,7 @@ impl<T: Real> Operator<T> {
         });
     }
 
-    /// The second half of a product, with the diagonal.
+    /// Transforms a product back to u, and adds the diagonal times p.
     fn back(&self, p: &[T], u: &mut [T], memory: &mut Memory<T>) {
         if self.diagonal.is_empty() {
             return self.product.back(u, memory);
@@ -174,7 +173,7 @@ impl<T: Real> Operator<T> {
         });
     }
 
-    /// `u = A p` with patches, by one product without factors for each patch,
+    /// Computes `u = A p` with patches, by one product without factors for each patch a:
     ///
     /// ```text
     /// u on patch a = A (sum over patches b of F(a, b) p on b)
@@ -201,7 +200,7 @@ impl<T: Real> Operator<T> {
     }
 }
 
-/// Coefficients on a grid, for products.
+/// Coefficients and their grid, as the crate toeplitz reads them.
 struct OnGrid<'a>(&'a Coefficients, &'a Grid);
 
 impl toeplitz::Coefficients for OnGrid<'_> {
@@ -218,7 +217,7 @@ impl toeplitz::Coefficients for OnGrid<'_> {
     }
 }
 
-/// Computes the symbol of coefficients times a factor, for pressures within a reach.
+/// Computes the symbol of the coefficients times a factor, for pressures within a reach.
 fn set_symbol<T: Real>(
     product: &mut Product<T>,
     (coefficients, factor): (&Coefficients, f64),
@@ -239,7 +238,7 @@ fn set_symbol<T: Real>(
 }
 
 impl<T: Real> Workspace<T> {
-    /// Memory for products by any of these operators.
+    /// Allocates memory for products by any of these operators.
     pub fn new<'a>(operators: impl Iterator<Item = &'a Operator<T>> + Clone) -> Result<Workspace<T>>
     where
         T: 'a,

@@ -1,10 +1,11 @@
-//! The periods of products.
+//! The periods of products. A is block Toeplitz, so it is a part of a block circulant with periods px and py. In each direction the period must keep
+//! all offsets apart that occur:
 //!
 //! ```text
-//! A is block Toeplitz, a part of a block circulant. Its period px * py must keep all occurring offsets apart:
-//! any p                        -(m-1)..m-1:     2m - 1, or 2m - 2 when the coefficients are even (those at m-1 and -(m-1) are then equal)
-//! p within a [`Reach`]         -reach..reach:   2 reach, when the coefficients are even
-//! A circulant in a direction   m: no padding
+//!                              offsets           least period
+//! any p                        -(m-1) to m-1     2m - 1, or 2m - 2 if the coefficients are even (those at m-1 and -(m-1) are then equal)
+//! p within a reach             -reach to reach   2 reach, if the coefficients are even
+//! A circulant in a direction   0 to m-1          m: no padding
 //! ```
 
 use toeplitz::lengths::{good_length, have_stages, length_for_stages};
@@ -12,7 +13,7 @@ use toeplitz::lengths::{good_length, have_stages, length_for_stages};
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 
-/// The largest offsets, in x and y, between elements that carry pressure and elements that are displaced.
+/// The largest offsets, in x and in y, between elements that carry pressure and elements that are displaced.
 pub type Reach = (usize, usize);
 
 /// The reach of pressures anywhere on a grid.
@@ -20,7 +21,7 @@ pub(super) fn full_reach(grid: &Grid) -> Reach {
     (grid.mx - 1, grid.my - 1)
 }
 
-/// The periods of a product.
+/// The periods of a product, in x and in y.
 pub(super) fn periods(coefficients: &Coefficients, grid: &Grid, reach: Reach) -> (usize, usize) {
     match coefficients.row_tables() {
         // There is a table for each row, so columns are not transformed.
@@ -35,8 +36,9 @@ pub(super) fn periods(coefficients: &Coefficients, grid: &Grid, reach: Reach) ->
     }
 }
 
-/// Periods of at least `least` for products by even coefficients; in periodic directions of the scene, the grid itself. Rows and columns both
-/// use the FFT stages of the crate toeplitz, or neither. A machine without SIMD has no such stages, but the same periods.
+/// The periods of at least `least` for products by even coefficients. In a periodic direction of the scene the period is the length of the grid. Rows
+/// and columns use the FFT stages of the crate toeplitz, if both periods have stages; otherwise neither does. A machine without SIMD has no such
+/// stages, but the same periods.
 pub(crate) fn even_periods(coefficients: &Coefficients, grid: &Grid, least: (usize, usize)) -> (usize, usize) {
     let repeats = coefficients.repeats(grid);
     let periods = |length: fn(usize) -> usize| {

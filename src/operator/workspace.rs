@@ -1,4 +1,4 @@
-//! Memory for products.
+//! The memory of products by an operator.
 
 use toeplitz::fft::Real;
 use toeplitz::{Memory, Room};
@@ -7,26 +7,27 @@ use crate::error::Result;
 use crate::memory::{keep, zeros};
 use crate::threads::Threads;
 
-/// Memory for a product, which then allocates nothing.
+/// The memory of products. A product with a workspace allocates nothing.
 pub struct Workspace<T: Real> {
+    /// The memory of transforms.
     pub(super) memory: Memory<T>,
-    /// With patches: p scaled for one patch, and its product.
+    /// With patches: p times the factors of one patch, and A times this.
     pub(super) masked: [Vec<T>; 2],
     /// With patches: a copy of p, for products in place.
     pub(super) given: Vec<T>,
 }
 
-/// The sizes of memory that the products of an operator need.
+/// The sizes of the memory that products by an operator need.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub struct Needs {
-    /// For transforms.
+    /// The memory of transforms.
     pub(super) room: Room,
-    /// Elements of the grid if there are patches, otherwise 0.
+    /// The number of elements of the grid if there are patches, otherwise 0.
     pub(super) masked: usize,
 }
 
 impl Needs {
-    /// The larger of both sizes.
+    /// The sizes that satisfy both needs.
     #[must_use]
     pub fn max(self, other: Needs) -> Needs {
         Needs { room: self.room.max(other.room), masked: self.masked.max(other.masked) }
@@ -34,7 +35,7 @@ impl Needs {
 }
 
 impl<T: Real> Workspace<T> {
-    /// Memory for products with these needs.
+    /// Allocates memory for products with these needs.
     pub fn of(needs: Needs, threads: &Threads) -> Result<Workspace<T>> {
         let memory = |n| zeros(n, "the product's workspace");
         Ok(Workspace {
@@ -44,12 +45,12 @@ impl<T: Real> Workspace<T> {
         })
     }
 
-    /// Releases the memory of transforms until the next product.
+    /// Releases the memory of transforms until the next product, which allocates it again.
     pub fn rest(&mut self) {
         self.memory.rest();
     }
 
-    /// Bytes held.
+    /// Bytes of this memory.
     pub fn bytes(&self) -> usize {
         self.memory.bytes() + 3 * size_of_val(&self.given[..])
     }

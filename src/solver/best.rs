@@ -28,7 +28,7 @@ impl Best {
     pub fn note(&mut self, state: &State, violation: f64) -> Result<()> {
         if violation < self.violation {
             self.found.reserve(state, "the best iterate")?;
-            self.found.keep(state);
+            self.found.copy_from(state);
             self.violation = violation;
         }
         Ok(())
@@ -56,7 +56,7 @@ impl Best {
         let by_approach = matches!(state.load, Load::Approach(_));
         if self.violation < now || !(now <= f64::MAX) {
             if self.violation.is_finite() {
-                self.found.give_back(state);
+                self.found.restore_to(state);
             } else {
                 state.p.fill(0.0);
                 state.at_limit.fill(false);

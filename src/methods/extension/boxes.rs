@@ -1,34 +1,41 @@
-//! The passes of the extension over some rows, with sums over boxes of elements.
+//! The loops of the extension over a few rows, with sums over boxes of elements.
 //!
-//! They are compiled for the vector instructions of this machine, on which no bit depends. They work on chunks of a row and skip chunks far from the
-//! boundary of C.
+//! The loops are compiled for the vector instructions of this machine, on which no bit depends. They divide each row into chunks and skip chunks far
+//! from the boundary of C.
 
 use std::ops::Range;
 
 use super::summand::{Sum, Summand};
 use crate::operator::fft::Real;
 
-/// Elements of a box in each direction.
+/// The number of elements of a box in each direction.
 pub(super) const BOX: usize = 2 * REACH + 1;
+/// The number of elements by which a box extends to each side of its element.
 pub(super) const REACH: usize = 4;
-/// Elements of a row that are processed together. A chunk far from the boundary of C is skipped.
+/// The number of elements of a row that are processed together, a chunk.
 pub(super) const CHUNK: usize = 64;
-/// Rows that are processed together. Their boxes overlap largely.
+/// The number of rows that are processed together. Their boxes overlap largely, and common sums are computed once.
 pub(super) const ROWS: usize = 4;
-/// Chunks that are summed together: first the columns of all, then threes of these, then across. If each chunk were
-/// summed at once, loads that overlap two recent stores would stall until these are in the cache.
+/// The number of chunks that are summed together in three stages: sums over columns for all chunks, sums over three neighbouring columns, sums across
+/// the box. If the stages of one chunk followed each other directly, each load that overlaps two recent stores would wait until these are in the
+/// cache.
 const TOGETHER: usize = 2;
-/// Columns of a chunk's boxes.
+/// The number of columns that the boxes of a chunk cover.
 const LENGTH: usize = CHUNK + BOX - 1;
 
-/// The elements of C in the boxes of rows from y on; 0 where an element is in C.
+/// Counts the elements of C in the box around each element of some rows; 0 for an element of C.
 pub(super) struct Count<'a, A, F> {
+    /// One value for each element of the grid.
     pub(super) values: &'a [A],
-    /// Whether an element of this value is in C.
+    /// Whether an element with this value is in C.
     pub(super) is_inside: F,
+    /// The number of elements of a row.
     pub(super) mx: usize,
+    /// The first row.
     pub(super) y: usize,
+    /// Output: the counts of these rows.
     pub(super) near: &'a mut [u16],
+    /// Output: whether a count in the chunk is positive.
     pub(super) rim: &'a mut [bool],
 }
 
@@ -59,14 +66,19 @@ impl<A: Copy, F: Fn(A) -> bool> pulp::NullaryFnOnce for Count<'_, A, F> {
     }
 }
 
-/// Rows of E z, from row y on.
+/// Computes some rows of E z.
 pub(super) struct Extend<'a, T> {
+    /// z on the whole grid, zero outside C.
     pub(super) z: &'a [T],
     pub(super) mx: usize,
     pub(super) y: usize,
+    /// The counts of [`Count`], from the first row on.
     pub(super) near: &'a [u16],
+    /// The chunks with positive counts, from the first row on.
     pub(super) rim: &'a [bool],
+    /// The number c.
     pub(super) absent: T,
+    /// Output: these rows of E z.
     pub(super) values: &'a mut [T],
 }
 
@@ -94,13 +106,16 @@ impl<T: Real> pulp::NullaryFnOnce for Extend<'_, T> {
     }
 }
 
-/// The shares that elements outside C in a row give to nearby elements of C.
+/// The first half of E^T, for one row: each element outside C divides its value by n + c. [`Collect`] adds this share to each element of C in the
+/// box.
 pub(super) struct Share<'a, T> {
     /// The values of this row.
     pub(super) values: &'a [T],
+    /// The counts of [`Count`] in this row, and the chunks with positive counts.
     pub(super) near: &'a [u16],
     pub(super) rim: &'a [bool],
     pub(super) absent: T,
+    /// Output: the shares, 0 for elements of C.
     pub(super) shares: &'a mut [T],
 }
 
@@ -123,12 +138,15 @@ impl<T: Real> pulp::NullaryFnOnce for Share<'_, T> {
     }
 }
 
-/// The sums for elements of C, from row y on.
+/// The second half of E^T, for some rows: adds to each element the shares in the box around it. The result is right for elements of C.
 pub(super) struct Collect<'a, T> {
+    /// The shares on the whole grid.
     pub(super) shares: &'a [T],
     pub(super) mx: usize,
     pub(super) y: usize,
+    /// The chunks of the whole grid with positive counts: only these have shares.
     pub(super) rim: &'a [bool],
+    /// The values of these rows, to which the shares are added.
     pub(super) values: &'a mut [T],
 }
 
@@ -139,7 +157,7 @@ impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
     fn call(self) {
         let Collect { shares, mx, y, rim, values } = self;
         let (count, chunks) = (values.len() / mx, mx.div_ceil(CHUNK));
-        // Chunks without shares in any of these rows are skipped.
+        // A chunk is skipped if neither it nor its neighbours have shares in any row of the boxes.
         let rows = y.saturating_sub(REACH) * chunks..rim.len().min((y + count + REACH) * chunks);
         box_sums(
             (shares, mx),
@@ -158,7 +176,7 @@ impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
     }
 }
 
-/// `1/(n + c)`; 0 if n is 0.
+/// `1/(n + c)`, or 0 if n = `near` is 0.
 #[inline(always)]
 fn share<T: Real>(near: u16, absent: T) -> T {
     let part = T::one() / (T::from_u16(near).unwrap_or_default() + absent);
@@ -169,9 +187,12 @@ fn share<T: Real>(near: u16, absent: T) -> T {
     }
 }
 
-/// Sums over the boxes around the elements of some rows of a grid, up to [`ROWS`], `mx` elements in each, for those chunks that are
-/// `wanted(row, chunk)`; `value` maps a value of the grid to its summand. Calls `take(row, chunk, its elements among those of the rows, sums)`,
-/// rows counted from the first. Sums beyond the elements are not valid.
+/// Computes the sums over the boxes around the elements of at most [`ROWS`] rows of a grid, which has `mx` elements in each row.
+///
+/// - `value` maps a value of the grid to its term in the sums.
+/// - `wanted(row, chunk)` tells whether the sums of a chunk are needed. Rows are counted from the first of `rows`.
+/// - `take(row, chunk, elements, sums)` receives the sums of a chunk. `elements` are those of the chunk, counted from the first element of `rows`. If
+///   the chunk has fewer than [`CHUNK`] elements, the last sums are not valid.
 #[inline(always)]
 fn box_sums<A: Copy, B: Summand>(
     (from, mx): (&[A], usize),
@@ -204,7 +225,8 @@ fn box_sums<A: Copy, B: Summand>(
     }
 }
 
-/// Sums over the columns of boxes, from [`REACH`] before column `start` on, for each of some rows; those beyond the row are zero.
+/// For each of some rows: the sums over the columns of the boxes, from the column `start` - [`REACH`] on. Sums of columns outside of the grid are
+/// zero.
 #[inline(always)]
 fn column_sums<A: Copy, B: Summand>(
     (from, mx): (&[A], usize),
@@ -227,7 +249,7 @@ fn column_sums<A: Copy, B: Summand>(
             }
         }
     }
-    // Shifts the columns to their position in the box.
+    // `columns` begins at the column `first` of the grid. It is shifted so that it begins at `start - REACH`.
     let (up, down) = ((first + REACH).saturating_sub(start), start.saturating_sub(first + REACH));
     if up + down > 0 {
         for columns in &mut columns {
@@ -239,23 +261,24 @@ fn column_sums<A: Copy, B: Summand>(
     columns
 }
 
-/// Four sums of nine rows, which start at the first, second, third and fourth row. The rows that all four share are summed once.
+/// Four sums over nine consecutive rows, which start at the first, second, third and fourth row. The six rows that all four sums share are added
+/// once.
 #[inline(always)]
 fn sums_of_four<A: Copy, B: Summand>(rows: [&[A]; ROWS - 1 + BOX], value: impl Fn(A) -> B) -> [[B; LENGTH]; ROWS] {
     let (rows, mut sums) = (rows.map(|row| &row[..LENGTH]), [[B::zero(); LENGTH]; ROWS]);
     for i in 0..LENGTH {
         let of = |k: usize| value(rows[k][i]);
-        let all = of(3).plus(of(4)).plus(of(5).plus(of(6))).plus(of(7).plus(of(8)));
-        let (before, behind) = (of(1).plus(of(2)), of(9).plus(of(10)));
-        sums[0][i] = all.plus(of(0).plus(before));
-        sums[1][i] = all.plus(before.plus(of(9)));
-        sums[2][i] = all.plus(of(2).plus(behind));
-        sums[3][i] = all.plus(behind.plus(of(11)));
+        let shared = of(3).plus(of(4)).plus(of(5).plus(of(6))).plus(of(7).plus(of(8)));
+        let (before, after) = (of(1).plus(of(2)), of(9).plus(of(10)));
+        sums[0][i] = shared.plus(of(0).plus(before));
+        sums[1][i] = shared.plus(before.plus(of(9)));
+        sums[2][i] = shared.plus(of(2).plus(after));
+        sums[3][i] = shared.plus(after.plus(of(11)));
     }
     sums
 }
 
-/// Sums of three neighbouring columns. The last two values are not valid.
+/// Sums over three neighbouring columns, from each column on. The last two values are not valid.
 #[inline(always)]
 fn sums_of_three<B: Summand>(columns: &[B; LENGTH]) -> [B; LENGTH] {
     let mut sums = *columns;
@@ -265,7 +288,7 @@ fn sums_of_three<B: Summand>(columns: &[B; LENGTH]) -> [B; LENGTH] {
     sums
 }
 
-/// Sums of [`BOX`] neighbouring columns, from the sums of three.
+/// Sums over [`BOX`] = 9 neighbouring columns, each from three sums over three columns.
 #[inline(always)]
 fn sums_across<B: Summand>(threes: &[B; LENGTH]) -> [B; CHUNK] {
     let mut sums = [B::zero(); CHUNK];

@@ -1,25 +1,34 @@
-//! The residual, extended beyond the contact area.
+//! The preconditioner M for the equations on C, with residuals that are extended beyond the contact area.
 //!
-//! M is the inverse of a circulant near A on the whole grid, and the residual r is known on C only. For every extension E r of r with
+//! M is the inverse of a circulant near A on the whole grid, but the residual r is known on C only. If M is `A^-1`, every extension E r of r has
 //!
 //! ```text
 //! (E r, M E r) >= (r, (A on C)^-1 r)
 //! ```
 //!
-//! equality holds for the displacement by the pressures that solve for r on C. Zero outside C is the worst extension. The energy of a step at the
-//! boundary grows with the number of elements across a component of C, and C of a rough surface has a long boundary. So E r is a mean of nearby
-//! values,
+//! Equality holds if E r is the displacement by the pressures that solve for r on C. Such an E r continues beyond C without a step. An extension by
+//! zero has a step at the boundary of C. The energy of the step grows with the number of elements across a component of C, and the contact area of a
+//! rough surface has a long boundary. Therefore E r outside C is a mean of nearby values of r:
 //!
 //! ```text
-//! E r = r on C,   (sum over B of r)/(n + c) outside,    B: the box of 9 x 9 elements around, n of them in C, c: an eighth of B
+//! E r = r                            on C
+//! E r = (sum of r over B)/(n + c)    outside;  B: the box of 9 x 9 elements around the element;  n: the elements of B in C;  c: an eighth of B
 //! ```
 //!
-//! and E^T M E, symmetric and positive definite for any E, replaces M. With a box of 7 or 13 elements at 512 x 512, or half or twice c, the
-//! number of iterations differs by one. A compliant layer makes A more diagonal and elements independent: c grows by the square of an
-//! element's influence on itself relative to that without a layer. Measured (tolerance 1e-6, iterations on the finest grid, zero outside and
-//! with boxes): rough surface by force 512 14 and 8, 1024 16 and 9, by approach 512 20 and 11; ellipse by force 512 6 and 3.
+//! E^T M E, which is symmetric and positive definite with M, replaces M. With boxes of 7 or 13 elements at 512 x 512, or half or twice c, the number
+//! of iterations differs by one. A compliant layer increases the diagonal of A, and so neighbours depend less on each other. Then c is multiplied by
+//! the square of the ratio of an element's influence on itself with the layer to that without.
 //!
-//! The normal problem extends one field, the tangential problem one for each component.
+//! Iterations on the finest grid for a tolerance of 1e-6 (measured):
+//!
+//! | problem | extension by zero | by boxes |
+//! |---|---:|---:|
+//! | rough surface, 512 x 512, given force | 14 | 8 |
+//! | rough surface, 1024 x 1024, given force | 16 | 9 |
+//! | rough surface, 512 x 512, given approach | 20 | 11 |
+//! | ellipse, 512 x 512, given force | 6 | 3 |
+//!
+//! The normal problem extends one field, the tangential problem one for each component of the tractions.
 
 mod boxes;
 mod summand;
@@ -34,39 +43,46 @@ use crate::operator::fft::Real;
 use crate::threads::Threads;
 use boxes::{Collect, Count, Extend, Share, BOX, CHUNK, REACH, ROWS};
 
-/// c, as a part of a box.
+/// The number c, relative to the elements of a box.
 const C_PER_BOX: f64 = 0.125;
-/// Least elements of a grid for which the extension saves more time than it takes. Processor times of cold calls with it on all grids, relative to
-/// those without it (table "cold" of `make bench`, programs in turns): 1.2 where the box around C has some 100 or 400 elements (ellipse 16, 32), 1.0
-/// to 1.15 at 2000 to 4000 (ellipse 64, wheel-rail y4_82kN), 0.87 at 15000 (wheel-rail y4_82kN x2), 0.92 and 0.83 at 65000 and 260000 (rough).
+/// The extension is used on grids of at least this many elements, where it saves more time than it takes. Processor times of first calls with the
+/// extension on all grids, relative to those without (table "cold" of `make bench`):
+///
+/// | elements in the rectangle around C | problem | time |
+/// |---|---|---:|
+/// | 100, 400 | ellipse 16, 32 | 1.2 |
+/// | 2000 to 4000 | ellipse 64, wheel-rail y4_82kN | 1.0 to 1.15 |
+/// | 15000 | wheel-rail y4_82kN x2 | 0.87 |
+/// | 65000, 260000 | rough | 0.92, 0.83 |
 const LEAST_ELEMENTS: usize = 8192;
-/// Least elements in the shorter direction of a grid with the extension. With it, strips of 9 to 36 rows with two periods end in
-/// cycles. Strips of 64 rows and more take half of the iterations.
+/// The extension is used on grids with at least this many elements in the shorter direction. On strips of 9 to 36 rows with two periods the iteration
+/// with the extension ends in endless cycles. Strips of 64 rows and more take half of the iterations.
 const LEAST_SIDE: usize = 64;
+/// The name of the memory in messages.
 const WHAT: &str = "the extended residual";
 
-/// E of fields of K components, and the memory for it.
+/// The extension E for fields of K components on one grid and for one contact area.
 pub struct Extension<T: Real, const K: usize> {
     mx: usize,
     my: usize,
-    /// `[K][my][mx]`.
+    /// The extended field E r, `[K][my][mx]`.
     values: Vec<T>,
-    /// Elements of C in each box; 0 where its element is in C.
+    /// For each element outside C: the number n of elements of C in the box around it. For each element of C: 0.
     near: Vec<u16>,
-    /// Whether a chunk has elements with others of C near them.
+    /// For each chunk of a row: whether `near` is positive anywhere in it, so that the chunk lies at the boundary of C.
     rim: Vec<bool>,
     threads: Threads,
 }
 
 impl<T: Real, const K: usize> Extension<T, K> {
-    /// The extension on `grid`. None if it would not save time.
+    /// Creates the extension on `grid`; None if it would not save time there.
     pub fn if_worthwhile(grid: &Grid, threads: &Threads) -> Result<Option<Extension<T, K>>> {
         (grid.len() >= LEAST_ELEMENTS && grid.mx.min(grid.my) >= LEAST_SIDE)
             .then(|| Extension::new(grid, threads))
             .transpose()
     }
 
-    /// Memory for a contact area on `grid`. Before use, call [`Extension::wake`] and [`Extension::count`].
+    /// Allocates the extension on `grid`. Before use, call [`Extension::wake`] and [`Extension::count`].
     fn new(grid: &Grid, threads: &Threads) -> Result<Extension<T, K>> {
         let mut values = Vec::new();
         reserve(&mut values, K * grid.len(), WHAT)?;
@@ -80,7 +96,8 @@ impl<T: Real, const K: usize> Extension<T, K> {
         })
     }
 
-    /// Counts the elements of C in each box near rows for which `has_changed(elements)`. C are the elements of values with `is_inside`.
+    /// Sets the contact area: counts the elements of C in the box around each element. An element is in C if `is_inside` of its value is true. The
+    /// counts of a group of rows are kept if `has_changed` is false for the range of all elements in their boxes.
     pub fn count<A: Copy + Sync>(
         &mut self,
         values: &[A],
@@ -97,13 +114,13 @@ impl<T: Real, const K: usize> Extension<T, K> {
         });
     }
 
-    /// c, for `compliance`: an element's influence on itself, relative to that without a layer.
+    /// The number c. `compliance` is an element's influence on itself with the layer, relative to that without.
     fn absent(&self, compliance: f64) -> T {
         let in_a_box = BOX.min(self.mx) * BOX.min(self.my);
         T::of(C_PER_BOX * in_a_box as f64 * compliance * compliance)
     }
 
-    /// values = E z of component k, for z zero outside C.
+    /// Sets component k of `values` to E z. z is zero outside C.
     fn extend(&mut self, k: usize, z: &[T], compliance: f64) {
         let absent = self.absent(compliance);
         let Extension { mx, my, values, near, rim, threads, .. } = self;
@@ -115,7 +132,7 @@ impl<T: Real, const K: usize> Extension<T, K> {
         });
     }
 
-    /// values = E^T values on C, undefined elsewhere. `shares` is overwritten.
+    /// Replaces `values` by E^T values on C; elsewhere the result is undefined. `shares` is overwritten.
     fn collect(&self, values: &mut [T], shares: &mut [T], compliance: f64) {
         let (mx, chunks, absent) = (self.mx, self.mx.div_ceil(CHUNK), self.absent(compliance));
         let Extension { near, rim, threads, .. } = self;
@@ -130,7 +147,8 @@ impl<T: Real, const K: usize> Extension<T, K> {
         });
     }
 
-    /// `to = E^T M E from` for `from` zero outside C, where `to` is undefined.
+    /// Sets `to = E^T M E from` on C; elsewhere `to` is undefined. `from` is zero outside C. `apply` applies M: it gets E from, and the memory for M
+    /// E from.
     pub fn between(
         &mut self,
         from: [&[T]; K],
@@ -148,24 +166,24 @@ impl<T: Real, const K: usize> Extension<T, K> {
         self.values = values;
     }
 
-    /// Frees memory until the next [`Extension::wake`].
+    /// Releases the memory of the extended field until the next [`Extension::wake`].
     pub fn rest(&mut self) {
         rest(&mut self.values);
     }
 
-    /// Allocates memory before the next use.
+    /// Makes the memory of the extended field usable after [`Extension::rest`].
     pub fn wake(&mut self) {
         wake(&mut self.values, K * self.mx * self.my, T::nan(), &self.threads);
     }
 
-    /// Bytes held.
+    /// Bytes of the extended field and of the counts.
     pub fn bytes(&self) -> usize {
         self.near.len() * (K * size_of::<T>() + size_of::<u16>()) + self.rim.len()
     }
 }
 
 impl<T: Real> Extension<T, 1> {
-    /// z = E^T M E z for z zero outside C, where the result is undefined.
+    /// Replaces z by E^T M E z on C; elsewhere the result is undefined. z is zero outside C. `apply` applies M in place.
     pub fn around(&mut self, z: &mut Vec<T>, compliance: f64, apply: impl FnOnce(&mut [T])) {
         self.extend(0, z, compliance);
         let mut values = std::mem::take(&mut self.values);

@@ -1,13 +1,13 @@
-//! The terms of box sums: counts and values.
+//! The terms of sums over boxes: bytes for counts, and real values.
 
 use crate::operator::fft::Real;
 
-/// A value that box sums add up.
+/// A value that can be added up in the sums over boxes.
 pub trait Summand: Copy {
     /// The value 0.
     fn zero() -> Self;
 
-    /// The sum of two.
+    /// `self + other`.
     fn plus(self, other: Self) -> Self;
 }
 
@@ -23,7 +23,7 @@ impl Summand for u8 {
     }
 }
 
-/// A sum of real values.
+/// A real value, or a sum of real values.
 #[derive(Clone, Copy)]
 pub struct Sum<T>(pub T);
 

@@ -1,4 +1,4 @@
-//! The exact solve on the coarsest grid: Gaussian elimination restricted to the contact area.
+//! The exact solution on the coarsest grid, by Gaussian elimination (LU factors) for the elements in contact.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
@@ -11,18 +11,22 @@ use crate::operator::dense;
 
 /// The elimination, with memory for the largest number of elements so far.
 pub struct Coarsest {
+    /// The elements in contact.
     elements: Vec<usize>,
+    /// The coefficients between these elements, column by column; later the LU factors.
     matrix: Vec<f64>,
+    /// The right-hand side; later the solution.
     right: Vec<f64>,
+    /// The permutation of rows by pivoting, and its inverse.
     permutation: Vec<usize>,
     inverse: Vec<usize>,
     scratch: MemBuffer,
-    /// Multiplications since the last [`Coarsest::take_multiplications`].
+    /// The multiplications since the last [`Coarsest::take_multiplications`].
     multiplications: f64,
 }
 
 impl Coarsest {
-    /// An elimination without memory.
+    /// Creates an elimination. It allocates memory when it is first used.
     pub fn new() -> Coarsest {
         Coarsest {
             elements: Vec::new(),
@@ -35,12 +39,12 @@ impl Coarsest {
         }
     }
 
-    /// Multiplications of eliminations since the last call: `n^3/3` each.
+    /// Returns the multiplications since the last call: `n^3/3` for each elimination with n elements.
     pub fn take_multiplications(&mut self) -> f64 {
         std::mem::take(&mut self.multiplications)
     }
 
-    /// Solves `A x = b` on the elements in contact; `x = 0` elsewhere.
+    /// Solves `A x = b` on the elements in contact, with `x = 0` elsewhere.
     pub fn solve(&mut self, coefficients: &Coefficients, grid: &Grid, contact: &[bool], b: &[f64], x: &mut [f64]) {
         x.fill(0.0);
         self.elements.clear();

@@ -1,8 +1,7 @@
 //! One multigrid V(n1, n2)-cycle for `A v = d` on the contact area (section 4.2 of the paper), from `v = 0`.
 //!
-//! The active-set loop applies the cycle to the residual and adds v to p. With the smoothers whose sweeps are linear
-//! the cycle is linear in d, and these are the iterates of a cycle that starts at p; the FFT smoother chooses its step
-//! lengths by d.
+//! The active-set loop applies the cycle to the residual and adds v to p. If the sweeps of the smoother are linear, the cycle is linear in d, and p +
+//! v is the result of a cycle that starts from p. The FFT smoother is not linear, because its step lengths depend on d.
 
 use super::coarsest::Coarsest;
 use super::hierarchy::{clear_exterior, levels, Level};
@@ -18,25 +17,25 @@ use crate::operator::Workspace;
 pub struct CycleShape {
     /// The smoother.
     pub smoother: SmootherKind,
-    /// n1, sweeps before the coarse-grid correction.
+    /// The number n1 of sweeps before the coarse-grid correction.
     pub pre_sweeps: usize,
-    /// n2, sweeps after it.
+    /// The number n2 of sweeps after the coarse-grid correction.
     pub post_sweeps: usize,
-    /// omega; 0: the smoother's default.
+    /// The relaxation factor omega. 0: the smoother's default.
     pub relaxation: f64,
     /// The coarsest grid has at most this many elements in each direction.
     pub coarsest: usize,
 }
 
 impl Default for CycleShape {
-    /// The paper's best: V(1,1) with Gauss-Seidel and its omega = 0.8, down to 4 x 4.
+    /// The best cycle of the paper: V(1,1) with Gauss-Seidel, omega = 0.8, and a coarsest grid of 4 x 4 elements.
     fn default() -> CycleShape {
         CycleShape { smoother: SmootherKind::GaussSeidel, pre_sweeps: 1, post_sweeps: 1, relaxation: 0.0, coarsest: 4 }
     }
 }
 
 impl CycleShape {
-    /// omega.
+    /// The relaxation factor omega that is used.
     pub fn relaxation(&self) -> f64 {
         if self.relaxation > 0.0 {
             self.relaxation
@@ -46,47 +45,46 @@ impl CycleShape {
     }
 }
 
-/// The multigrid solver: a hierarchy of grids, with the memory of a cycle on each.
+/// A hierarchy of grids, and all that a cycle on them needs.
 pub struct Multigrid {
     /// The levels; `levels[0]` is the finest.
     pub levels: Vec<Level>,
     shape: CycleShape,
     coarsest: Coarsest,
-    /// Memory for the product on any of the levels.
+    /// Memory for products on any of the levels.
     workspace: Workspace<f64>,
 }
 
 impl Multigrid {
-    /// Sets up cycles of one shape on the grid of `problem`.
+    /// Sets up cycles of one shape, whose finest grid is that of `problem`.
     pub fn new(problem: &mut Problem, shape: CycleShape) -> Result<Multigrid> {
         let levels = levels(problem, shape.smoother, shape.coarsest)?;
         let workspace = Workspace::new(levels.iter().map(|level| &*level.operator))?;
         Ok(Multigrid { levels, shape, coarsest: Coarsest::new(), workspace })
     }
 
-    /// Number of levels; level 0 is the finest.
+    /// The number of levels. Level 0 is the finest.
     pub fn depth(&self) -> usize {
         self.levels.len()
     }
 
-    /// Products done on level `l` since the last call.
+    /// Returns the number of products on level `l` since the last call.
     pub fn take_products(&mut self, l: usize) -> u64 {
         std::mem::take(&mut self.levels[l].products)
     }
 
-    /// `u = A p` on level `l`.
+    /// Computes `u = A p` on level `l`.
     pub fn displace(&mut self, l: usize, p: &[f64], u: &mut [f64]) {
         self.levels[l].operator.apply(p, u, &mut self.workspace);
         self.levels[l].products += 1;
     }
 
-    /// The work of eliminations on the coarsest grid since the last call, in products on the finest.
+    /// Returns the cost of eliminations on the coarsest grid since the last call, in work units.
     pub fn take_eliminations(&mut self) -> f64 {
         self.coarsest.take_multiplications() / multiplications_of_product(&self.levels[0].grid)
     }
 
-    /// One cycle that starts on level `l`: the correction `v` with `A v` near `defect` on the contact area, zero
-    /// outside.
+    /// Makes one cycle that starts on level `l`. Returns the correction v, with `A v` near `defect` on the contact area and v = 0 outside.
     pub fn cycle(&mut self, l: usize, defect: &[f64], contact: &[bool]) -> &[f64] {
         let level = &mut self.levels[l];
         level.contact.copy_from_slice(contact);
@@ -101,8 +99,8 @@ impl Multigrid {
         &self.levels[l].correction
     }
 
-    /// `A v` on the whole grid, v being the correction of the last cycle that started on level `l`, if it is a
-    /// by-product of it.
+    /// `A v` on the whole grid, where v is the correction of the last cycle that started on level `l`. Only the FFT smoother computes this product as
+    /// a by-product; None with other smoothers, and on the coarsest level.
     pub fn correction_product(&self, l: usize) -> Option<&[f64]> {
         match &self.levels[l].smoother {
             Smoother::Fft(fft) if l + 1 < self.depth() => Some(fft.product()),
@@ -110,6 +108,7 @@ impl Multigrid {
         }
     }
 
+    /// Makes the part of a cycle on level `l` and below, for the level's `defect` and `contact`.
     fn cycle_level(&mut self, l: usize) {
         let Multigrid { levels, shape, coarsest, workspace } = self;
         let (finer, coarser) = levels.split_at_mut(l + 1);
@@ -120,7 +119,7 @@ impl Multigrid {
             return;
         };
 
-        // Pre-smoothing, from v = 0, whose residual is the defect.
+        // Pre-smoothing starts from v = 0, whose residual is the defect.
         level.correction.fill(0.0);
         level.residual.copy_from_slice(&level.defect);
         if let Smoother::Fft(fft) = &mut level.smoother {
@@ -131,7 +130,7 @@ impl Multigrid {
             level.update_residual(workspace);
         }
 
-        // Defects and contact area to the coarse grid, the correction there, and back.
+        // Defect and contact area are restricted to the coarse grid. Its correction is interpolated back.
         transfer::restrict_contact(&level.grid, &coarse.grid, &level.contact, &mut coarse.contact);
         transfer::restrict_mean(&level.grid, &coarse.grid, |i| level.residual[i], &mut coarse.defect);
         clear_exterior(&mut coarse.defect, &coarse.contact);
@@ -148,7 +147,8 @@ impl Multigrid {
         }
     }
 
-    /// Bytes held by the unknowns, and by the operators and coefficients of coarser grids; the finest grid's are the problem's.
+    /// Bytes of the unknowns of all grids, and of the operators and coefficients of the coarser grids. Those of the finest grid belong to the
+    /// problem.
     pub fn bytes(&self) -> usize {
         let elements: usize = self.levels.iter().map(|level| level.grid.len()).sum();
         let coarser: usize =
@@ -157,7 +157,8 @@ impl Multigrid {
     }
 }
 
-/// Multiplications of a product by FFT: transforms of 4 n real values there and back, each of `n log2 n` of them.
+/// The number of multiplications of a product by FFT. It has a forward and an inverse transform of n real values, each with about `n log2 n`
+/// multiplications; n is 4 times the number of elements, because of the padding.
 fn multiplications_of_product(grid: &Grid) -> f64 {
     let n = 4.0 * grid.len() as f64;
     2.0 * n * n.log2()

@@ -1,9 +1,10 @@
-//! The grids of the multigrid method, finest first, each with its own operator.
+//! The grids of the multigrid method, finest first. Each grid has a separate operator.
 //!
-//! Standard coarsening joins 2 x 2 elements. If a count is odd, the last coarse element covers the single remaining one. It keeps
-//! the doubled size in its coefficients, and only its part inside the grid carries pressure. A direction is not coarsened
-//! if it has at most `coarsest` elements, or while its elements are more than twice as long as in the other
-//! direction (slender elements are first joined along their short side).
+//! Standard coarsening joins 2 x 2 elements. If the number of elements in a direction is odd, the last coarse element covers the single remaining
+//! element. The coefficients of this coarse element have the doubled size, but only its part inside the grid carries pressure.
+//!
+//! A direction is not coarsened if it has at most `coarsest` elements, or while its elements are more than twice as long as in the other direction
+//! (slender elements are first joined along their short side).
 
 use std::sync::Arc;
 
@@ -19,22 +20,27 @@ use crate::operator::{zeros, Operator, Workspace};
 pub struct Level {
     /// The grid.
     pub grid: Grid,
-    /// Its coefficients.
+    /// The influence coefficients of the grid.
     pub coefficients: Coefficients,
-    /// `u = A p` on it.
+    /// The operator of `u = A p` on the grid.
     pub operator: Arc<Operator<f64>>,
-    /// The work of one product, in work units: products on the finest grid.
+    /// The cost of one product on the grid, in work units.
     pub work: f64,
     pub(super) smoother: Smoother,
+    /// The correction v.
     pub(super) correction: Vec<f64>,
+    /// The right-hand side d, 0 outside C.
     pub(super) defect: Vec<f64>,
+    /// The residual d - A v, 0 outside C.
     pub(super) residual: Vec<f64>,
+    /// The contact area C on the grid.
     pub(super) contact: Vec<bool>,
-    /// Products since the last query.
+    /// The number of products since it was last asked for.
     pub(super) products: u64,
 }
 
 impl Level {
+    /// Sets up one grid of the hierarchy. The finest grid shares the operator of the problem.
     fn new(problem: &mut Problem, grid: Grid, coefficients: Coefficients, kind: SmootherKind) -> Result<Level> {
         let (n, finest) = (grid.len(), problem.grid.len());
         let operator = match grid == problem.grid {
@@ -56,7 +62,7 @@ impl Level {
         })
     }
 
-    /// `r = d - A v` on the contact area, zero outside, unless the smoother maintains it.
+    /// Computes the residual `r = d - A v` on the contact area, unless the smoother has updated it.
     pub(super) fn update_residual(&mut self, workspace: &mut Workspace<f64>) {
         if self.smoother.keeps_residual() {
             return;
@@ -68,7 +74,7 @@ impl Level {
         }
     }
 
-    /// One sweep. It overwrites the residual or updates it.
+    /// Makes one sweep of the smoother, which overwrites the residual or updates it.
     pub(super) fn smooth(&mut self, relaxation: f64, workspace: &mut Workspace<f64>) {
         let Level { operator, smoother, correction, residual, contact, products, .. } = self;
         smoother.sweep(correction, residual, contact, relaxation, |changes, product| {
@@ -77,7 +83,8 @@ impl Level {
         });
     }
 
-    /// Adds the correction of the next coarser level, piecewise constant, zero outside the contact area.
+    /// Adds the correction of the next coarser level, interpolated piecewise constant, and zero outside the contact area. The FFT smoother multiplies
+    /// it by a step length.
     pub(super) fn correct(&mut self, coarser: &Level, workspace: &mut Workspace<f64>) {
         let Level { grid, operator, smoother, correction, residual, contact, products, .. } = self;
         let from = &coarser.correction;
@@ -99,7 +106,7 @@ pub(super) fn clear_exterior(values: &mut [f64], contact: &[bool]) {
     values.iter_mut().zip(contact).filter(|(_, &inside)| !inside).for_each(|(value, _)| *value = 0.0);
 }
 
-/// The levels, finest first: coarsens the grid of `problem` until no direction has more than `coarsest` elements.
+/// Sets up the levels, finest first: coarsens the grid of `problem` until no direction has more than `coarsest` elements.
 pub(super) fn levels(problem: &mut Problem, kind: SmootherKind, coarsest: usize) -> Result<Vec<Level>> {
     let (grid, coefficients) = (problem.grid, problem.coefficients.clone());
     let mut levels = vec![Level::new(problem, grid, coefficients, kind)?];

@@ -1,4 +1,4 @@
-//! The multigrid method of section 4.2: grids, transfers, smoothers, the V-cycle.
+//! The multigrid method (section 4.2 of the paper): grids, transfers between them, smoothers, and the V-cycle.
 
 mod coarsest;
 mod cycle;

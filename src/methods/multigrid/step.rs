@@ -1,6 +1,7 @@
-//! The multigrid-based algorithm (section 4.1 of the paper) as a step: one V-cycle.
+//! The multigrid-based algorithm (section 4.1 of the paper) as a [`Step`] of the loop: one V-cycle.
 //!
-//! Step 2 restricts the system to C, step 3 is the cycle; steps (4.1), (4.2) and the decision to go on are the loop's.
+//! Here are step 2 of the paper, which restricts the equations to C, and step 3, the cycle. The loop makes steps (4.1) and (4.2), and decides whether
+//! to go on.
 
 use super::Multigrid;
 use crate::contact::{AdmissibleSet, Freshness, State};
@@ -9,20 +10,21 @@ use crate::memory::reserve;
 use crate::methods::{Change, Policy, Step, Task};
 use crate::scene::Load;
 
-/// Memory for cycles, kept from one solve to the next.
+/// The memory of cycles, which the next solve reuses.
 #[derive(Default)]
 pub struct Workspace {
+    /// -e on C, 0 outside.
     residual: Vec<f64>,
     unit: UnitApproach,
 }
 
-/// V-cycles on level `level` of the grids.
+/// V-cycles that start on level `level` of the grids.
 pub struct Cycles<'a> {
     /// The grids.
     pub multigrid: &'a mut Multigrid,
-    /// The level of the state; 0 is the finest.
+    /// The level of the state's grid; 0 is the finest.
     pub level: usize,
-    /// Memory.
+    /// The memory of the cycles.
     pub workspace: &'a mut Workspace,
 }
 
@@ -49,10 +51,10 @@ impl<S: AdmissibleSet> Step<S> for Cycles<'_> {
         let Task { state, monitor, .. } = task;
         let (multigrid, l) = (&mut *self.multigrid, self.level);
         let Workspace { residual, unit } = &mut *self.workspace;
-        // 2. p = 0 in E, and the system restricted to C.
+        // 2. p = 0 in the exterior area, and the equations are restricted to C.
         residual.clear();
         residual.extend((0..state.p.len()).map(|i| if state.contact[i] { -state.deformed_distance(i) } else { 0.0 }));
-        // 3. One multigrid cycle.
+        // 3. One multigrid cycle is made.
         if let Load::Force(force) = state.load {
             if unit.contact != state.contact {
                 unit.find(multigrid, l, &state.contact);
@@ -87,29 +89,34 @@ impl<S: AdmissibleSet> Step<S> for Cycles<'_> {
     }
 }
 
-/// With a prescribed force: the response of one cycle to a unit approach, `response = B 1` with B the cycle. The change
-/// `amount` of the approach with which p + B r + amount * response carries the prescribed force is a Newton step. A
-/// nonlinear cycle is homogeneous, so amount * response is its response to that change. As the cycle lowers the energy
-/// (v, A v)/2 - (1, v) from v = 0, the sum of the response is positive, so the step exists.
+/// With a prescribed force: how one cycle responds to a unit change of the approach.
+///
+/// Let B be the cycle; the response is `B 1`. The approach changes by the `amount` with which p + B r + amount * response carries the prescribed
+/// force, which is a Newton step for the approach. A nonlinear cycle is homogeneous, so amount * response is its response to that change. The cycle
+/// lowers the energy (v, A v)/2 - (1, v) from v = 0, so the sum of the response is positive, and the step exists.
 #[derive(Default)]
 struct UnitApproach {
-    /// The contact area of the response; empty: none yet.
+    /// The contact area to which the response belongs. Empty: there is no response yet.
     contact: Vec<bool>,
-    /// Empty with a prescribed approach.
+    /// The response B 1. Empty with a prescribed approach.
     response: Vec<f64>,
-    /// A response; empty unless it is a by-product of the cycle.
+    /// A times the response. Empty unless the cycle computes it as a by-product.
     product: Vec<f64>,
+    /// The right-hand side 1.
     ones: Vec<f64>,
+    /// The change of the approach.
     amount: f64,
 }
 
 impl UnitApproach {
+    /// Discards the response.
     fn forget(&mut self) {
         self.contact.clear();
         self.response.clear();
         self.product.clear();
     }
 
+    /// Computes the response on a contact area by one cycle.
     fn find(&mut self, multigrid: &mut Multigrid, l: usize, contact: &[bool]) {
         fn copy<A: Copy>(from: &[A], to: &mut Vec<A>) {
             to.clear();
@@ -121,7 +128,7 @@ impl UnitApproach {
         copy(multigrid.correction_product(l).unwrap_or_default(), &mut self.product);
     }
 
-    /// u = u + A v + amount * A response, if `A v` is known. Returns whether it is.
+    /// Sets u = u + A v + amount * A response, if `product` = A v is known. Returns whether it is.
     fn displace(&self, product: Option<&[f64]>, u: &mut [f64]) -> bool {
         let Some(product) = product else { return false };
         u.iter_mut().zip(product).for_each(|(u, value)| *u += value);

@@ -1,22 +1,22 @@
-//! Transfer between a grid and the next coarser one (section 4.2 of the paper, figure 3).
+//! Transfer of values between a grid and the next coarser grid (section 4.2 of the paper, figure 3).
 //!
-//! A coarse element covers up to 2 x 2 fine ones, its children: four by standard coarsening, fewer at the end of an odd
-//! count or if one direction is not coarsened.
+//! A coarse element covers up to 2 x 2 fine elements, its *children*: four by standard coarsening, fewer at the end of a row or column with an odd
+//! number of elements, or if one direction is not coarsened.
 
 use crate::grid::{children, Grid};
 use crate::threads::Threads;
 
-/// Coarse elements of a row interpolated together.
+/// The number of coarse elements of a row that are interpolated together.
 const BLOCK: usize = 32;
 
-/// Restriction by the mean over all children. Defects in the exterior area are zero and are included in the mean.
+/// Restricts values by the mean over all children. Defects in the exterior area are zero and are included in the mean.
 pub fn restrict_mean(fine: &Grid, coarse: &Grid, from: impl Fn(usize) -> f64 + Sync + Send, to: &mut [f64]) {
     let add = |(sum, count): (f64, f64), child| (sum + from(child), count + 1.0);
     collect(fine, coarse, to, add, |(sum, count)| sum / count);
 }
 
-/// Restriction of the undeformed distance: the mean over the children that have a surface, `+infinity` if none has. Distances above
-/// `highest` count as `highest`.
+/// Restricts the undeformed distance: takes the mean over the children that have a surface, or `+infinity` if none has. A distance above `highest`
+/// counts as `highest`.
 pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: &[f64], highest: f64, to: &mut [f64], threads: &Threads) {
     let add = |(sum, count): (f64, f64), h: &f64| match *h {
         f64::INFINITY => (sum, count),
@@ -34,7 +34,7 @@ pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: &[f64], highest: f64, to
             match second {
                 Some(second) => row.iter_mut().zip(first.zip(second)).for_each(|(to, children)| {
                     *to = mean(match children {
-                        // The common case, which the compiler unrolls.
+                        // Four children are the common case: the compiler unrolls the loop.
                         ([a, b], [c, d]) => [a, b, c, d].into_iter().fold((0.0, 0.0), add),
                         (first, second) => first.iter().chain(second).fold((0.0, 0.0), add),
                     });
@@ -47,7 +47,7 @@ pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: &[f64], highest: f64, to
     );
 }
 
-/// Restriction of the contact area: in contact when at least half of the children are (2 of 4).
+/// Restricts the contact area: a coarse element is in contact if at least half of its children are (2 of 4).
 pub fn restrict_contact(fine: &Grid, coarse: &Grid, contact: &[bool], to: &mut [bool]) {
     let add = |(inside, count): (usize, usize), child: usize| (inside + usize::from(contact[child]), count + 1);
     collect(fine, coarse, to, add, |(inside, count)| 2 * inside >= count);
@@ -74,14 +74,14 @@ fn collect<A: Default, B>(
     }
 }
 
-/// Piecewise constant interpolation: every child gets `combine(its value, the coarse value)`.
+/// Interpolates piecewise constant: calls `combine(value, coarse value)` for every fine element, which may change its value.
 pub fn interpolate(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64], combine: impl Fn(&mut f64, f64)) {
     for (y, row) in to.chunks_exact_mut(fine.mx).enumerate() {
         interpolate_row(fine, coarse, from, y, row, &combine);
     }
 }
 
-/// Piecewise constant interpolation in row y of the fine grid.
+/// Interpolates piecewise constant in row y of the fine grid; see [`interpolate`].
 #[inline(always)]
 pub fn interpolate_row(
     fine: &Grid,
@@ -105,8 +105,8 @@ pub fn interpolate_row(
     }
 }
 
-/// Linear interpolation between the centres of the coarse elements, constant beyond the outermost centres and next to unknown values (`+infinity`,
-/// outside a window).
+/// Interpolates linearly between the centres of the coarse elements. The interpolation is constant beyond the outermost centres, and next to unknown
+/// values, which are `+infinity` (outside a window).
 pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64], threads: &Threads) {
     let mix = |near: f64, far: f64| if far == f64::INFINITY { near } else { 0.75 * near + 0.25 * far };
     threads.for_a_pass(fine.len()).for_each_plain_row(
@@ -114,7 +114,7 @@ pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [
         fine.mx,
         #[inline(always)]
         |y, row| {
-            // The coarse row that holds this one, and its neighbour on the same side.
+            // `near` is the coarse row that contains row y, `far` its neighbour on the side on which row y lies.
             let (near, far) = match (coarse.my == fine.my, y % 2) {
                 (true, _) => (y, y),
                 (_, 0) => (y / 2, (y / 2).saturating_sub(1)),
@@ -126,7 +126,7 @@ pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [
                 row.iter_mut().enumerate().for_each(|(x, to)| *to = at(x));
                 return;
             }
-            // Blocks of coarse elements, with a neighbour on each side: the compiler vectorises these loops.
+            // The loops are over blocks of coarse elements, with a neighbour on each side, so that the compiler vectorises them.
             let mut mixed = [0.0; BLOCK + 2];
             for (children, first) in row.chunks_mut(2 * BLOCK).zip((0..).step_by(BLOCK)) {
                 let count = children.len().div_ceil(2);

@@ -1,34 +1,37 @@
-//! Conjugate gradients for the equations on a fixed contact area, with the approach or the force prescribed.
+//! Conjugate gradients for the equations on a fixed contact area C, with the approach or the force prescribed.
 //!
 //! ```text
-//! prescribed approach:  A p = approach - h              on C, p = 0 outside
-//! prescribed force:     A p = approach - h, sum of p dx dy = F;  the approach is unknown, so residuals and search
-//!                       directions keep mean zero over C, and the approach is the mean of h + A p over C
+//! prescribed approach:  A p = approach - h                            on C, p = 0 outside
+//! prescribed force:     A p = approach - h, sum of p dx dy = F        on C, p = 0 outside
 //! ```
+//!
+//! If the force is prescribed, the approach is unknown. Then residuals and search directions have the mean zero over C, so that the force does not
+//! change, and the approach is the mean of h + A p over C.
 
 use super::Workspace;
-use crate::contact::{norm_of_distance, relative, State, OF_PRODUCT};
+use crate::contact::{norm_of_distance, relative, State, PRODUCT_ROUND_OFF};
 use crate::error::{Error, Result};
 use crate::methods::Task;
 use crate::scene::Load;
 use crate::sums::dot;
 
-/// The stopping criteria of the inner iteration.
+/// The stopping criteria of an inner solve. It stops if the criterion `residual` holds, or if the criteria `update` and `believed` hold.
 #[derive(Clone, Copy, Debug)]
 pub struct InnerStop {
-    /// 2-norm over C of the recursively updated residual.
+    /// The 2-norm over C of the recursive residual is at most this.
     pub residual: f64,
-    /// Or: rms of the last change of p at most this part of the rms of p (NORM's own criterion); 0: not used.
+    /// The rms of the last change of p is at most this part of the rms of p (NORM's own criterion). 0: this criterion is not used.
     pub update: f64,
-    /// With `update`: the residual has to be at most this as well.
+    /// The 2-norm over C of the recursive residual is at most this, so that a small update can be believed.
     pub believed: f64,
-    /// 2-norm over C of `h - approach`, the scale of reported residuals.
+    /// The 2-norm over C of `h - approach`, to which reported residuals are relative.
     pub distance: f64,
-    /// Most iterations.
+    /// The largest number of iterations.
     pub iterations: usize,
 }
 
-/// Conjugate gradients from the state's p, with u = A p. Updates p but not u. Returns the update: rms over C of the last change of p.
+/// Solves the equations on C by conjugate gradients, from the state's p and u = A p. Updates p but not u. Returns the rms over C of the last change
+/// of p.
 pub fn conjugate_gradients<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspace: &mut Workspace) -> Result<f64> {
     let Task { problem, state, monitor, .. } = task;
     let n = state.p.len();
@@ -45,14 +48,14 @@ pub fn conjugate_gradients<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, works
     let mut rr: f64 = dot(r, r);
     let mut update = 0.0;
     let noise = noise(state, (0..n).filter(|&i| contact[i]), &state.u);
-    // Bodies that fit up to round-off have no distances.
+    // If the bodies fit up to round-off, all distances are round-off. Then the first residual is the scale.
     let aim = stop.residual.max(f64::EPSILON * norm_of_distance(state).max(rr.sqrt()));
     for _ in 0..stop.iterations {
         if !(rr.sqrt() > aim) {
             break;
         }
         if stop.update > 0.0 && rr.sqrt() <= noise {
-            // On few elements the solution is exact after few iterations, although the last update was not small.
+            // On few elements p is exact after few iterations, although the last update is not small. The next update would be 0.
             return Ok(0.0);
         }
         problem.displace(direction, product)?;
@@ -70,7 +73,7 @@ pub fn conjugate_gradients<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, works
         for (r, q) in r.iter_mut().zip(&*product) {
             *r -= step * q;
         }
-        // A mean from round-off would accumulate in the directions until it dominates.
+        // Without this projection, a mean due to round-off would accumulate in the search directions until it dominates.
         project(r);
         let before = std::mem::replace(&mut rr, dot(r, r));
         update = step.abs() * (dot(direction, direction) / count).sqrt();
@@ -86,7 +89,7 @@ pub fn conjugate_gradients<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, works
     Ok(update)
 }
 
-/// Sets values outside C to 0 and, with a prescribed force, makes the mean over the `count` elements of C zero.
+/// Sets values outside C to 0. If `count`, the number of elements in C, is given, also subtracts the mean over C.
 fn project(values: &mut [f64], contact: &[bool], count: Option<f64>) {
     let mut sum = 0.0;
     for (value, &inside) in values.iter_mut().zip(contact) {
@@ -101,8 +104,8 @@ fn project(values: &mut [f64], contact: &[bool], count: Option<f64>) {
     }
 }
 
-/// The round-off of a residual on `elements` with displacement `u`: a smaller residual is noise, and so is its curvature.
+/// The round-off of the norm of `approach - h - u` over `elements`. A smaller residual is noise, and so is the curvature p'Ap of a direction from it.
 pub(super) fn noise(state: &State, elements: impl Iterator<Item = usize>, u: &[f64]) -> f64 {
     let terms = |i: usize| (state.approach - state.h[i]).abs() + u[i].abs();
-    OF_PRODUCT * elements.map(|i| terms(i) * terms(i)).sum::<f64>().sqrt()
+    PRODUCT_ROUND_OFF * elements.map(|i| terms(i) * terms(i)).sum::<f64>().sqrt()
 }

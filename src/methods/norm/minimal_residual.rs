@@ -1,5 +1,5 @@
-//! Restarted GMRES (Saad & Schultz 1986) for the equations on a fixed contact area with an A that is not symmetric, as the caller's table may be.
-//! Conjugate gradients would converge to a wrong solution or not at all.
+//! Restarted GMRES (Saad & Schultz 1986) for the equations on a fixed contact area C. It is used if A is not symmetric, which the caller's table of
+//! coefficients may be. For such an A, conjugate gradients would converge to a wrong solution or not at all.
 
 use super::conjugate_gradients::noise;
 use super::{InnerStop, Workspace};
@@ -10,21 +10,25 @@ use crate::methods::Task;
 use crate::scene::Load;
 use crate::sums::dot;
 
-/// Directions kept before a restart.
+/// The number of directions after which GMRES is restarted.
 const RESTART: usize = 40;
 
-/// Memory for the directions and the small system of their coefficients.
+/// The directions of GMRES, and the triangular system for the factors y of the directions in the change of p.
 #[derive(Default)]
 pub(super) struct Krylov {
-    /// The elements in contact; all vectors have one value for each.
+    /// The elements in C. All vectors have one value for each of them.
     elements: Vec<usize>,
-    /// One direction after the other.
+    /// The orthonormal directions, one after the other.
     basis: Vec<f64>,
+    /// The change of p on C.
     change: Vec<f64>,
-    /// [`RESTART`] values a column: the triangle of the Hessenberg matrix after Givens rotations.
+    /// The columns of the Hessenberg matrix after Givens rotations, which make it upper triangular. Each column has [`RESTART`] values.
     columns: Vec<f64>,
+    /// Cosine and sine of each rotation.
     rotations: Vec<(f64, f64)>,
+    /// The right-hand side after the rotations. Its last value is the norm of the residual, up to the sign.
     right: Vec<f64>,
+    /// The factors of the directions.
     y: Vec<f64>,
 }
 
@@ -38,7 +42,7 @@ impl Krylov {
         Ok(reserve(&mut self.change, self.elements.len(), "GMRES")?)
     }
 
-    /// The first direction is the residual, whose norm is `beta`.
+    /// Discards all directions, and takes the residual, whose norm is `beta`, as the first new direction.
     fn restart(&mut self, residual: &[f64], beta: f64) {
         self.basis.clear();
         self.basis.extend(residual.iter().map(|r| r / beta));
@@ -48,7 +52,7 @@ impl Krylov {
         self.right.push(beta);
     }
 
-    /// The last direction, as pressures on the grid; zero outside C.
+    /// Writes the last direction to the elements of C in `full`, an array on the grid.
     fn write_last(&self, full: &mut [f64]) {
         let m = self.elements.len();
         for (&i, v) in self.elements.iter().zip(&self.basis[self.rotations.len() * m..]) {
@@ -56,15 +60,16 @@ impl Krylov {
         }
     }
 
-    /// Adds a direction, from the product of the last. Returns the remaining residual, and whether the direction is dependent; none for a singular
-    /// system, for which the best of this space is taken.
+    /// Adds a direction: `product`, which is A times the last direction, orthogonalised against all directions. Returns the norm of the residual, and
+    /// whether the new direction depends linearly on the others. None if the triangular system would be singular: then the solution comes from the
+    /// directions before.
     fn add(&mut self, product: &[f64], project: impl Fn(&mut [f64])) -> Option<(f64, bool)> {
         let (k, m) = (self.rotations.len(), self.elements.len());
         self.basis.extend(self.elements.iter().map(|&i| product[i]));
         let (basis, w) = self.basis.split_at_mut((k + 1) * m);
         self.columns.resize((k + 1) * RESTART, 0.0);
         let column = &mut self.columns[k * RESTART..];
-        // The direction is orthogonalised twice, and its mean is removed each time. A mean left by round-off would not appear in the residual.
+        // The direction is orthogonalised twice, and its mean is removed each time: a mean left by round-off would not appear in the residual.
         for _ in 0..2 {
             project(w);
             for (h, v) in column.iter_mut().zip(basis.chunks_exact(m)) {
@@ -90,7 +95,7 @@ impl Krylov {
         Some((self.right[k + 1].abs(), below <= f64::EPSILON * diagonal))
     }
 
-    /// The change of p on C: the combination of the directions with the least residual, by back substitution.
+    /// Computes the change of p on C: the linear combination of the directions that has the smallest residual. Its factors come by back substitution.
     fn combine(&mut self) -> &[f64] {
         let Krylov { elements, basis, change, columns, rotations, right, y } = self;
         let k = rotations.len();
@@ -109,8 +114,8 @@ impl Krylov {
     }
 }
 
-/// GMRES from the state's p, with u = A p. With a prescribed force, corrections keep mean zero over C. Returns the update:
-/// rms over C of the last change of p.
+/// Solves the equations on C by GMRES, from the state's p and u = A p. Updates p but not u. If the force is prescribed, the changes of p have the
+/// mean zero over C. Returns the rms over C of the change of p since the last restart.
 pub fn minimal_residual<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspace: &mut Workspace) -> Result<f64> {
     let Task { problem, state, monitor, .. } = task;
     let Workspace { residual, direction: full, product, krylov } = workspace;
@@ -133,7 +138,7 @@ pub fn minimal_residual<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspac
         residual.extend(krylov.elements.iter().map(|&i| state.approach - state.h[i] - product[i]));
         project(residual);
         let beta = norm(residual);
-        // A true residual at round-off does not decrease by restarts.
+        // If the true residual is round-off, restarts do not decrease it.
         let stays = beta > 0.5 * before && beta <= noise(state, krylov.elements.iter().copied(), product);
         if beta <= aim || iterations >= stop.iterations || stays {
             return Ok(update);
@@ -166,6 +171,7 @@ pub fn minimal_residual<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspac
     }
 }
 
+/// The 2-norm.
 fn norm(values: &[f64]) -> f64 {
     dot(values, values).sqrt()
 }

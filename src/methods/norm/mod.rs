@@ -1,9 +1,9 @@
-//! The original algorithm, Kalker's NORM (section 3 of the paper): an active set, and conjugate gradients inside.
+//! The original algorithm, Kalker's NORM (section 3 of the paper): an active-set method whose equations are solved by conjugate gradients.
 //!
-//! 1. Start from a contact area.
-//! 2. Solve `h - approach + A p = 0` on it, `p = 0` outside, by conjugate gradients from `p = 0`.
-//! 3. Elements with `p < 0` leave, exterior elements with `e < 0` enter.
-//! 4. Repeat until the contact area stays.
+//! 1. Start from a contact area C.
+//! 2. Solve `h - approach + A p = 0` on C, with `p = 0` outside, by conjugate gradients from `p = 0` (the *inner solve*).
+//! 3. Elements with `p < 0` leave C, and exterior elements with `e < 0` enter C.
+//! 4. Repeat steps 2 and 3 until C no longer changes.
 
 mod conjugate_gradients;
 mod minimal_residual;
@@ -16,7 +16,7 @@ pub use step::Norm;
 use crate::error::Result;
 use crate::memory::reserve;
 
-/// Memory for inner solves, kept from one to the next.
+/// The memory of inner solves. The next inner solve reuses it.
 #[derive(Default)]
 pub struct Workspace {
     residual: Vec<f64>,
@@ -26,12 +26,12 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Bytes held.
+    /// Bytes of the vectors of conjugate gradients. Those of GMRES are not counted.
     pub(crate) fn bytes(&self) -> usize {
         (self.residual.len() + self.direction.len() + self.product.len()) * size_of::<f64>()
     }
 
-    /// Memory for conjugate gradients on n elements.
+    /// Allocates memory for conjugate gradients on n elements.
     pub(crate) fn reserve(&mut self, n: usize) -> Result<()> {
         for values in [&mut self.residual, &mut self.direction, &mut self.product] {
             reserve(values, n, "NORM's workspace")?;

@@ -1,11 +1,11 @@
-//! Steps along the deflation direction d in addition to those along t:
+//! Steps along the deflation direction d (module `deflation`), in addition to those along t:
 //!
 //! ```text
 //! t has mean zero over C, as under a prescribed force
-//! gamma = (r - alpha q, d)/(d, w),  p = p + alpha t + gamma d,  u = u + alpha q + gamma w
+//! gamma = (r - alpha q, d)/(d, w),  w = A d,  p = p + alpha t + gamma d,  u = u + alpha q + gamma w
 //! ```
 //!
-//! Elements not in C at the start are removed from d, and by one product from w.
+//! Before the first step, elements outside C are removed from d, and by one product from w.
 
 use super::deflation::{Deflation, Last};
 use super::deflation_passes::{Change, Restrict, Subtract};
@@ -19,16 +19,17 @@ use crate::operator::fft::Real;
 use crate::rectangle::Rectangle;
 use crate::sums::Sums;
 
-/// Ratio of the sum of a change to the sum of its absolute values from which it carries force; rolling moves pressures without force.
+/// A change of p carries force if its sum exceeds this part of the sum of its absolute values. Rolling, by contrast, moves pressures along without a
+/// change of the force.
 const CARRYING_RATIO: f64 = 0.5;
-/// Least change of e by a first step along d, relative to the residual.
+/// The first step along d is made if it changes e by more than this part of the residual.
 const LEAST_FIRST_STEP: f64 = 0.1;
-/// A change below this part of the pressures is round-off.
+/// A change below this part of the pressures, both as sums of absolute values, is round-off.
 const LEAST_CHANGE: f64 = 1e-6;
 
 impl<T: Real> Iteration<T> {
-    /// Makes the deflation direction from the change of `state`, the part of a grid of `mx` columns in the window, since the last solution; none if
-    /// it carries no force. Returns the products that this takes.
+    /// Sets the deflation direction to the change of p since the last solution. `state` is the part in the window of a grid with `mx` columns. There
+    /// is no direction if there is no last solution, or if the change carries no force. Returns the number of products that this takes.
     pub fn deflate_by_change(
         &mut self,
         state: &State,
@@ -65,7 +66,7 @@ impl<T: Real> Iteration<T> {
         Ok(0)
     }
 
-    /// d: the change of p from `last` on C; w = A d by a product.
+    /// Sets d to the change of p from `last` on C, and w = A d by a product.
     fn displace_change(&mut self, state: &State, last: &[f64], (window, mx): (&Rectangle, usize), units: &Scaling) {
         let width = window.x.len();
         for (i, d) in self.deflation.d.iter_mut().enumerate() {
@@ -77,7 +78,7 @@ impl<T: Real> Iteration<T> {
         self.deflation.measure();
     }
 
-    /// Restricts d to C; z is overwritten. Returns the products that this takes.
+    /// Removes elements outside C from d, and their displacements from w. Overwrites z. Returns the number of products that this takes.
     pub(super) fn restrict_deflation(&mut self, state: &State) -> u64 {
         let is_there = self.deflation.is_there();
         let (Deflation { d, .. }, z) = (&mut self.deflation, &mut self.z);
@@ -91,7 +92,7 @@ impl<T: Real> Iteration<T> {
         1
     }
 
-    /// The sums of a step, and those of gamma.
+    /// Computes the sums over C for alpha and for gamma.
     pub(super) fn step_sums_beside_deflation(&mut self, state: &State) -> StepSums {
         let (State { h, u, p, .. }, formula) = (state, StepTerms { approach: state.approach });
         let arrays = [&self.t[..], &self.q, &self.deflation.d];
@@ -99,7 +100,7 @@ impl<T: Real> Iteration<T> {
         StepSums { rt, tq, tt, t1, pp, rd, qd, energy: None }
     }
 
-    /// gamma for a step of length alpha along t; 0 without a deflation direction.
+    /// The length gamma of the step along d that accompanies a step of length alpha along t; 0 without a deflation direction.
     pub(super) fn gamma(&self, step: &StepSums, alpha: f64) -> f64 {
         let gamma = (step.rd - alpha * step.qd) / self.deflation.energy;
         if self.deflation.is_there() && gamma.is_finite() {
@@ -109,8 +110,8 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// After a step of length gamma along w, which contains elements that left d before: defers a correction for these. Elements that have just left
-    /// C leave d.
+    /// After a step of length gamma: elements that have just left C leave d, but w still contains their displacements. Therefore a correction is
+    /// deferred for each element that left d before this step.
     pub(super) fn leave_deflation(&mut self, gamma: f64) {
         if !self.deflation.is_there() {
             return;
@@ -127,7 +128,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Before the first step: moves p and u along d to the least energy, if that is worth a pass over u.
+    /// Before the first step: moves p and u along d to the least energy, if the change is worth a loop over u.
     pub(super) fn step_along_deflation(&mut self, state: &mut State) {
         if !self.deflation.is_there() {
             return;

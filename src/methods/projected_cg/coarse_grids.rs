@@ -1,9 +1,10 @@
-//! The coarser grids for a start without a guess (nested iteration, section 4.3 of the paper). Each grid starts from the pressures of the next
-//! coarser one, piecewise constant, and its displacements, linearly interpolated.
+//! The coarser grids, from which a solve without a guess starts (nested iteration, section 4.3 of the paper). Each grid starts from the solution of
+//! the next coarser grid: from its pressures, piecewise constant, and from its displacements, linearly interpolated. If that grid's relative residual
+//! exceeds 1, which p = 0 has, the next grid starts from p = 0.
 //!
-//! With two periods u has mean zero, so the mean of e is that of `h - approach` on every grid: an approach beyond the mean of a grid's h has no
-//! solution there, and one close to it a huge pressure. A grid of an odd count covers more than a period. Its h is shifted to the mean of the finest
-//! grid, so that it is feasible if the finest grid is. If the residual of a coarser grid exceeds 1, that of p = 0, the next grid starts from p = 0.
+//! With two periods u has mean zero, so the mean of e is the mean of `h - approach`. An approach beyond the mean of h has no solution, and an
+//! approach close to it a huge pressure. A coarser grid covers more than a period if the finer count of elements is odd. Therefore the h of each
+//! coarser grid is shifted to the mean of the finest grid, so that the coarser grid has a solution if the finest has.
 
 use std::f64::consts::PI;
 use std::iter::successors;
@@ -30,42 +31,42 @@ use crate::threads::Threads;
 
 /// The coarsest grid has at most this many elements in each direction.
 const COARSEST: usize = 8;
-/// Tolerance on the coarsest grid: its discretisation error is larger.
+/// The tolerance on the coarsest grid, whose discretisation error is larger.
 const COARSEST_TOLERANCE: f64 = 1e-3;
-/// Most iterations on the coarsest grid, and on those between (with 3 to 5 there, 1.0 to 1.1 times as many products).
+/// The largest number of iterations on the coarsest grid.
 const COARSEST_ITERATIONS: u64 = 50;
+/// The same on the grids between the coarsest and the finest. With 3 to 5 a solve takes 1.0 to 1.1 times as many products.
 const COARSE_ITERATIONS: u64 = 2;
-/// Iterations with elements at their limit: on 48 scenes (`examples/pressure_limits`) 4, 5, 6, 8 take at most 6.0, 3.2, 3.3, 3.6 times the work of
-/// the plain scene.
+/// The same if elements are at their limit. With 4, 5, 6 and 8, each of 48 scenes (`examples/pressure_limits`) takes at most 6.0, 3.2, 3.3 and 3.6
+/// times the work of the scene without limits.
 const LIMITED_ITERATIONS: u64 = 5;
-/// Iterations with a search for the force, which tries three forces. Measured on 60 lines: at most 85 products on the finest grid; with two and four
-/// forces 130 and 110.
+/// The same with a search for the force: three forces. 60 lines take at most 85 products on the finest grid; with two and four forces 130 and 110.
 const FORCE_ITERATIONS: u64 = 6;
 
 /// One coarser grid.
 pub(super) struct Coarse {
     pub(super) level: Level,
     pub(super) state: State,
-    /// Limits of the pressures, if a scene has any.
+    /// The pressure limits of its elements, if the scene has any.
     limits: Vec<f64>,
 }
 
 /// All coarser grids.
 pub struct CoarseGrids {
-    /// Elements of the finest grid.
+    /// The number of elements of the finest grid.
     pub(super) finest: usize,
-    /// The coarsest last.
+    /// The grids, from the finer ones to the coarsest.
     pub(super) grids: Vec<Coarse>,
     threads: Threads,
-    /// Whether the coefficients are up to date with the finest grid.
+    /// Whether the coefficients belong to the present ones of the finest grid.
     are_current: bool,
-    /// The survey of the last start on the finest of these grids.
+    /// The survey of the last grid that was solved.
     found: Survey,
     find_force: FindForce,
 }
 
 impl CoarseGrids {
-    /// The grids below `grid`. Their operators are set up when needed.
+    /// Creates the grids that are coarser than `grid`. Their operators are set up when needed.
     pub fn new(grid: &Grid, of_grid: &Coefficients, precision: Precision, threads: &Threads) -> Result<CoarseGrids> {
         let below = || successors(coarsen(grid, COARSEST), |grid| coarsen(grid, COARSEST));
         let mut grids = sparse(below().count(), "coarser grids")?;
@@ -89,7 +90,7 @@ impl CoarseGrids {
         self.are_current = false;
     }
 
-    /// Takes the coefficients of the finest grid, `grid`, if they changed.
+    /// Coarsens the coefficients of the finest grid `grid` anew, if they have changed.
     pub fn renew(&mut self, grid: &Grid, coefficients: &Coefficients) -> Result<()> {
         if self.are_current {
             return Ok(());
@@ -104,7 +105,7 @@ impl CoarseGrids {
         Ok(())
     }
 
-    /// Bytes held.
+    /// Bytes of all coarser grids.
     pub fn bytes(&self) -> usize {
         self.find_force.bytes() + self.grids.iter().map(|grid| grid.level.bytes() + grid.state.bytes()).sum::<usize>()
     }
@@ -114,12 +115,12 @@ impl CoarseGrids {
         self.grids.iter_mut().for_each(|grid| grid.level.forget_window());
     }
 
-    /// Solves on the coarser grids, and copies their solution to the task's state. Returns the freshness of its u.
+    /// Solves on the coarser grids, and interpolates their solution to the task's state. Returns how accurately its u then equals A p.
     pub fn start<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<Freshness> {
         let (count, self_influence) = (self.grids.len(), task.problem.self_influence());
         let Task { state: fine, lowest, set, goal, monitor, .. } = task;
         if count == 0 {
-            // Drops a useless guess.
+            // Discards the pressures of a guess.
             fine.p.fill(0.0);
             fine.u.fill(0.0);
             fine.start(self_influence);
@@ -169,7 +170,7 @@ impl CoarseGrids {
         Ok(displacement)
     }
 
-    /// Restricts distances, load and limits to all coarser grids. Elements above `highest` are out of reach.
+    /// Restricts distances, load and limits to all coarser grids. Elements with h above `highest` are never in contact.
     fn restrict<S: AdmissibleSet>(&mut self, fine: &mut State, set: S, highest: f64) -> Result<()> {
         let threads = self.threads.clone();
         for l in 0..self.grids.len() {
@@ -188,8 +189,8 @@ impl CoarseGrids {
         Ok(())
     }
 
-    /// The error of p on the finest grid by single-precision errors of u, relative to p (rms over elements with
-    /// pressure). They have a white spectrum: with the wave number k an error takes `E* |k|/2` times as much pressure.
+    /// The error of p on the finest grid that single-precision errors of u cause, relative to the rms of p over elements in contact. These errors of
+    /// u have a white spectrum. An error of u with the wave number k causes an error of p that is `E* |k|/2` times as large.
     pub fn noise(&self, fine: &Problem) -> f64 {
         let Some(Coarse { state, .. }) = self.grids.first() else { return 0.0 };
         let Survey { squares, contact_count, .. } = self.found;
@@ -201,7 +202,7 @@ impl CoarseGrids {
         f64::from(f32::EPSILON) * deepest * 0.5 * modulus * wave_number / f64::sqrt(squares / contact_count as f64)
     }
 
-    /// Some iterations on grid `l`.
+    /// Iterates on grid `l`, from displacements of the given accuracy.
     fn iterate<S: AdmissibleSet>(
         &mut self,
         l: usize,
@@ -229,7 +230,7 @@ impl CoarseGrids {
         Ok(end)
     }
 
-    /// Restricts limits to the coarser grids: means over the joined elements, infinite if one limit is. No element is at its limit.
+    /// Restricts limits to the coarser grids: each is the mean over the joined elements, infinite if one of them is. No element is then at its limit.
     fn restrict_limits<S: AdmissibleSet>(&mut self, fine: &State, set: S) -> Result<()> {
         for l in 0..self.grids.len() {
             let (finer, coarser) = self.grids.split_at_mut(l);
@@ -248,14 +249,14 @@ impl CoarseGrids {
         Ok(())
     }
 
-    /// The state of the grid next finer than `l`, and grid `l`.
+    /// The state of the next finer grid than `l`, and grid `l`.
     fn pair<'a>(&'a mut self, l: usize, finest: &'a mut State) -> (&'a mut State, &'a mut Coarse) {
         let (finer, coarser) = self.grids.split_at_mut(l);
         (finer.last_mut().map_or(finest, |grid| &mut grid.state), &mut coarser[0])
     }
 }
 
-/// Truncates pressures to their limit.
+/// Truncates pressures at their limit, and moves these elements from C to their limit.
 fn truncate_to<S: AdmissibleSet>(state: &mut State, set: S) {
     if !state.reached_limit && !set.any_beyond(0, state.p.iter().copied()) {
         return;
@@ -269,7 +270,7 @@ fn truncate_to<S: AdmissibleSet>(state: &mut State, set: S) {
     }
 }
 
-/// Shifts the distances of a coarser grid to the mean of the finer one's, unless elements have no surface, which leaves the mean of e free.
+/// Shifts the h of a coarser grid to the mean of the finer grid's h. If elements have no surface, the mean of e is free, and h stays.
 pub fn shift_to_mean(fine: &[f64], coarse: &mut [f64]) {
     let shift = mean(fine) - mean(coarse);
     if shift.is_finite() {
@@ -277,8 +278,8 @@ pub fn shift_to_mean(fine: &[f64], coarse: &mut [f64]) {
     }
 }
 
-/// Interpolates from the coarser grid: pressures piecewise constant (the preconditioner removes the difference to smoother interpolation), contact
-/// area, and displacements linearly. Elements above `highest` are out of reach.
+/// Interpolates from a coarser grid: pressures and contact area piecewise constant (the preconditioner removes the difference to a smoother
+/// interpolation), displacements linearly. Elements with h above `highest` are never in contact. The loop has no branches, so it is vectorised.
 fn prolong(coarse: &State, fine: &mut State, highest: f64, threads: &Threads) {
     let (from, to) = (coarse.grid, fine.grid);
     transfer::interpolate_linearly(&to, &from, &coarse.u, &mut fine.u, threads);
@@ -291,7 +292,6 @@ fn prolong(coarse: &State, fine: &mut State, highest: f64, threads: &Threads) {
         |y, p, contact| {
             transfer::interpolate_row(&to, &from, &coarse.p, y, p, |to, value| *to = value);
             for ((p, inside), h) in p.iter_mut().zip(contact).zip(&h[y * to.mx..]) {
-                // Without a branch, so that the compiler vectorises this.
                 *p = if h.is_infinite() | (*h > highest) { 0.0 } else { *p };
                 *inside = *p > 0.0;
             }

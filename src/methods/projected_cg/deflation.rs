@@ -1,10 +1,11 @@
-//! The deflation direction: a direction d whose displacement w = A d is known, so that a step along it costs no product.
+//! The deflation direction: a change d of the pressures whose displacement w = A d is known, so that a step along d costs no product.
 //!
-//! Under a prescribed approach the residual has a part that is uniform over C. The pressure of a flat punch on C removes it, but a few
-//! products with M do not approximate this pressure, because M ignores the boundary of C. A small change of the load changes p by nearly this
-//! pressure, so the change of p since the last solution in time serves for d. Module `uniform` has another direction.
+//! If the approach is prescribed, the residual has a part that is uniform over C. The pressure of a flat punch on C would remove this part, but a few
+//! products with M do not approximate this pressure, because M ignores the boundary of C. A small change of the load changes p by nearly the pressure
+//! of a flat punch. So d is the change of p since the last solution in time. Module `uniform` has another choice of d.
 //!
-//! An element that leaves C later is removed from d but not from w = A d and from (d, w); the missing part is added to the deferred corrections.
+//! An element that leaves C later is removed from d, but neither from w = A d nor from (d, w). The missing part of u is added to the deferred
+//! corrections.
 
 use super::deflation_passes::measures;
 use crate::error::Result;
@@ -12,35 +13,36 @@ use crate::memory::{keep, reserve};
 use crate::operator::fft::Real;
 use crate::sums::Sums;
 
-/// Pressures of an earlier solution and their displacements, on the whole grid, in the scene's units.
+/// The pressures and displacements of an earlier solution, on the whole grid, in the scene's units.
 #[derive(Clone, Copy)]
 pub struct Last<'a> {
-    /// p.
+    /// The pressures p.
     pub p: &'a [f64],
-    /// u = A p. Without it w takes a product.
+    /// The displacements u = A p. If they are not known, w takes a product.
     pub u: Option<&'a [f64]>,
 }
 
-/// d and w = A d.
+/// The deflation direction d and its displacement w = A d.
 #[derive(Default)]
 pub(super) struct Deflation<T> {
     pub(super) d: Vec<T>,
     pub(super) w: Vec<T>,
     /// (d, w); 0 without a direction.
     pub(super) energy: f64,
-    /// The sums of d^2, and of w^2 over the elements of d.
+    /// The sum of d^2.
     length: f64,
+    /// The sum of w^2 over the elements where d is not 0.
     pub(super) size: f64,
-    /// Whether d follows from C, not from the last change (modules `uniform` and `flat_punch`).
+    /// Whether d depends on C alone (modules `uniform` and `flat_punch`), not on the last change of p.
     pub(super) is_uniform: bool,
-    /// Elements of C when d was made.
+    /// The number of elements in C when d was set up.
     pub(super) elements: u64,
-    /// Elements that left C: they are 0 in d, but w contains their displacements.
+    /// The elements that left C since then, with their former d. d is now 0 there, but w contains their displacements.
     pub(super) outside: Vec<(usize, f64)>,
 }
 
 impl<T> Deflation<T> {
-    /// Drops the direction.
+    /// Discards the direction.
     pub(super) fn forget(&mut self) {
         self.energy = 0.0;
     }
@@ -50,14 +52,14 @@ impl<T> Deflation<T> {
         self.energy > 0.0
     }
 
-    /// Bytes held.
+    /// Bytes of d and w.
     pub(super) fn bytes(&self) -> usize {
         2 * self.d.len() * size_of::<T>()
     }
 }
 
 impl<T: Real> Deflation<T> {
-    /// d and w; t and q if gamma is 0, so that no other memory is read.
+    /// The arrays d and w for a step of length gamma along d. If gamma is 0, t and q stand for them, so that no other memory is read.
     pub(super) fn beside<'a>(&'a self, gamma: f64, t: &'a [T], q: &'a [T]) -> (&'a [T], &'a [T]) {
         if gamma == 0.0 {
             (t, q)
@@ -76,7 +78,7 @@ impl<T: Real> Deflation<T> {
         self.length.sqrt()
     }
 
-    /// Allocates memory for d and w, and removes the elements that left.
+    /// Allocates memory for d and w, and forgets the elements that left d.
     pub(super) fn reserve(&mut self, n: usize) -> Result<()> {
         for values in [&mut self.d, &mut self.w] {
             reserve(values, n, "the change of the last step")?;
@@ -86,19 +88,20 @@ impl<T: Real> Deflation<T> {
         Ok(())
     }
 
-    /// Keeps the memory for later solves.
+    /// Gives the memory of d and w to later solves, when this direction is no longer used.
     pub(super) fn keep(&mut self) {
         keep([&mut self.d, &mut self.w]);
     }
 
-    /// Measures d and w = A d.
+    /// Computes (d, w) and the sums of d^2 and w^2.
     pub(super) fn measure(&mut self) {
         let mut sums = Sums::new();
         sums.add([], [&self.d, &self.w], |[], [d, w]| measures(d, w));
         self.take_measures(sums.values());
     }
 
-    /// Takes (d, w), and the sums of d^2 and of w^2, from a pass. Drops the direction if w is out of the range of single precision.
+    /// Sets (d, w), and the sums of d^2 and of w^2. Discards the direction if (d, w) is not finite, because w is out of the range of single
+    /// precision.
     pub(super) fn take_measures(&mut self, [energy, length, size]: [f64; 3]) {
         let energy = if energy.is_finite() { energy } else { 0.0 };
         (self.energy, self.length, self.size) = (energy, length, size);

@@ -1,15 +1,18 @@
-//! The passes over a change of the pressures d and its displacements w, compiled for the vectors of this machine, on which no bit depends.
+//! The loops over a change d of the pressures and its displacements w. They are compiled for the vector length of this machine, on which no bit
+//! depends.
 
 use crate::operator::fft::Real;
 use crate::sums::Sums;
 
-/// A row of d and w: the present values less a factor times the earlier ones, which converts their units.
+/// Computes d and w in one row: present values minus earlier values. Earlier values are in the scene's units; a factor converts them.
 pub(super) struct Change<'a, T> {
+    /// Present pressures, earlier pressures, and the factor on the earlier ones.
     pub(super) p: (&'a [f64], &'a [f64], f64),
+    /// Present displacements, earlier displacements, and the factor on the earlier ones.
     pub(super) u: (&'a [f64], &'a [f64], f64),
     pub(super) d: &'a mut [T],
     pub(super) w: &'a mut [T],
-    /// The sums of d, |d| and |p|, and the measures of d and w.
+    /// The sums of d, |d| and |p|, and the three sums of [`measures`].
     pub(super) sums: &'a mut Sums<6>,
 }
 
@@ -29,7 +32,7 @@ impl<T: Real> pulp::NullaryFnOnce for Change<'_, T> {
     }
 }
 
-/// Moves the values outside C from d to z, which is overwritten. Returns whether there are any.
+/// Moves the values of elements outside C from d to z, which is 0 elsewhere. Returns whether any of these values is not 0.
 pub(super) struct Restrict<'a, T> {
     pub(super) d: &'a mut [T],
     pub(super) z: &'a mut [T],
@@ -51,7 +54,7 @@ impl<T: Real> pulp::NullaryFnOnce for Restrict<'_, T> {
     }
 }
 
-/// w = w - z; returns the measures of d and w.
+/// Subtracts z from w. Returns the three sums of [`measures`].
 pub(super) struct Subtract<'a, T> {
     pub(super) d: &'a [T],
     pub(super) w: &'a mut [T],
@@ -70,8 +73,8 @@ impl<T: Real> pulp::NullaryFnOnce for Subtract<'_, T> {
     }
 }
 
-/// An element's terms of (d, w) and of the sums of d^2 and of w^2 over the elements of d. An infinite w makes (d, w) NaN at d = 0, which rejects the
-/// change.
+/// One element's terms in (d, w), in the sum of d^2, and in the sum of w^2 over the elements where d is not 0. An infinite w makes (d, w) infinite or
+/// NaN, even if d = 0. The direction is then discarded.
 #[inline(always)]
 pub(super) fn measures(d: f64, w: f64) -> [f64; 3] {
     [d * w, d * d, if d == 0.0 { 0.0 } else { w * w }]

@@ -1,10 +1,10 @@
-//! By approach: p scaled to the least energy.
+//! With a prescribed approach: p is scaled to the least energy `(p, u)/2 + (p, h - approach)`.
 //!
 //! ```text
 //! p = c p, u = c u,  c = (p, approach - h)/(p, u)
 //! ```
 //!
-//! The step length needs sums over C. From them follow the sums after the step, except for the few truncated elements, which are added one by one:
+//! The sums over C after a step follow from those that the step length needs. Only the few truncated elements are added one by one:
 //!
 //! ```text
 //! (p + alpha t, approach - h) = (p, approach - h) + alpha (t, approach - h)
@@ -19,8 +19,8 @@ use crate::operator::fft::Real;
 use crate::scene::Load;
 
 impl<T: Real> Iteration<T> {
-    /// After a step: makes p carry the prescribed force, or scales it to the least energy; `update` gets the factor. `limited`: whether an element
-    /// was at its limit; by approach p is then not scaled. `sums`: see [`Iteration::least_energy`].
+    /// After a step: scales p to carry the prescribed force, or to the least energy, and stores the factor in `update`. If `limited`, elements were
+    /// at their limit before: then p is not scaled with a prescribed approach. `sums` are those of [`Iteration::least_energy`].
     pub(super) fn scale_to_load<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
@@ -38,9 +38,9 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// By approach: scales p and the deferred corrections to the least energy `(p, u)/2 + (p, h - approach)`, u being that after `update`, which gets
-    /// the factor. Costs no product. If p moves along the deflation direction, or pressures reached a limit, p is scaled only after a product that
-    /// corrected a truncation. `sums`: `(p, approach - h)` and `(p, u)`, if known.
+    /// If the approach is prescribed: scales p and the deferred corrections to the least energy, where u is that after `update`, and stores the
+    /// factor in `update`. This takes no product. If there is a deflation direction, or pressures have reached a limit, p is scaled only after a
+    /// product that corrected a truncation. `sums` are `(p, approach - h)` and `(p, u)`, if known.
     pub(super) fn least_energy<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
@@ -58,14 +58,14 @@ impl<T: Real> Iteration<T> {
         let (work, energy) = sums.unwrap_or_else(|| self.work_and_energy(state, update));
         let factor = work / energy;
         if factor.is_finite() && factor > 0.0 {
-            // On one element this is the solution, without a direction left.
+            // On one element the scaled p is the solution, and there is no direction without force.
             self.is_scaled = scales && self.segments.count() > 1;
             update.factor = factor;
             self.scale(state, factor);
         }
     }
 
-    /// `(p, approach - h)` and `(p, u)`, u being that after `update`.
+    /// Computes `(p, approach - h)` and `(p, u)`, where u is that after `update`.
     fn work_and_energy(&mut self, state: &State, update: &Update) -> (f64, f64) {
         let (_, w) = self.deflation.beside(update.gamma, &self.t, &self.q);
         let (State { h, u, p, .. }, products) = (state, [&self.q[..], &self.z, w]);
@@ -74,8 +74,8 @@ impl<T: Real> Iteration<T> {
         (work, energy)
     }
 
-    /// `(p, approach - h)` and `(p, u)` after a step that truncated elements. The given `(work, energy)` contain the first `included` of these; the
-    /// others are added here.
+    /// `(p, approach - h)` and `(p, u)` after a step that truncated elements. `(work, energy)` are these sums with the first `included` entries of
+    /// the truncation; the other entries are added here.
     pub(super) fn after_truncation(
         &self,
         state: &State,
@@ -90,13 +90,14 @@ impl<T: Real> Iteration<T> {
     }
 }
 
-/// The size of the terms of both sums.
+/// The sum of the absolute values of the terms of `(p, approach - h)` and `(p, u)`.
 fn size_of_terms(state: &State) -> f64 {
     let of_element = |i: usize| state.p[i].abs() * ((state.approach - state.h[i]).abs() + state.u[i].abs());
     (0..state.p.len()).filter(|&i| state.contact[i]).map(of_element).sum()
 }
 
-/// Whether predicted sums equal those of a pass to 1e-6 of the size of their terms: some round-off of single precision. Both sums may nearly cancel.
+/// Whether predicted sums (a, b) equal computed sums (c, d) up to round-off of single precision: 1e-6 of `size`, the sum of the absolute values of
+/// the terms. The terms of either sum may nearly cancel.
 fn near((a, b): (f64, f64), ((c, d), size): ((f64, f64), f64)) -> bool {
     !((a - c).abs() > 1e-6 * size || (b - d).abs() > 1e-6 * size)
 }

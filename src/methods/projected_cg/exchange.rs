@@ -7,8 +7,8 @@ use crate::contact::{enter, leave, AdmissibleSet, State};
 use crate::operator::fft::Real;
 
 impl<T: Real> Iteration<T> {
-    /// p = p + alpha t + gamma d on C, and (4.1): elements beyond a bound, and those clipped by the forecast, leave for it; the correction of u by
-    /// their truncation is deferred. Returns their number.
+    /// Sets p = p + alpha t + gamma d on C, and makes step (4.1): elements beyond a bound, and elements that were clipped for the `forecast`, leave C
+    /// for this bound. The correction of u for their truncation is deferred. Returns the number of elements that leave C.
     pub(super) fn update_pressures<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
@@ -43,20 +43,20 @@ impl<T: Real> Iteration<T> {
         (truncation.count() - before) as u64
     }
 
-    /// z = A d: makes the deferred corrections of u by a product.
+    /// Sets z = A d by a product, where d are the deferred corrections of p. No correction is deferred any more.
     pub(super) fn correct_now(&mut self) {
         self.truncation.take(&mut self.z);
         self.operator.apply_in_place(&mut self.z, &mut self.workspace);
     }
 
-    /// u = factor (u + alpha q + gamma w + A d), and (4.2). Returns the number of elements that enter. One pass over the grid, as its arrays exceed
-    /// the caches.
+    /// Sets u = factor (u + alpha q + gamma w + A d), and makes step (4.2). Returns the number of elements that enter C. Both are done in one loop
+    /// over the grid, because its arrays exceed the caches.
     pub(super) fn update_displacements<S: AdmissibleSet>(&mut self, state: &mut State, update: &Update) -> u64 {
         let (q, (_, w)) = (&self.q[..], self.deflation.beside(update.gamma, &self.t, &self.q));
         let limited = S::LIMITED && state.has_limited();
         let State { h, u, contact, at_limit, .. } = state;
         let held = if limited { &at_limit[..] } else { &[] };
-        // Elements at their limit enter from the other side.
+        // The allowance is for exterior elements. It would have the wrong sign for elements at their limit, which enter if e > 0.
         let approach = if limited { state.approach } else { state.approach - self.allowance };
         let (moved, entering) = (MovedU(update), Entering { approach, is_fixed: S::FIXED, held });
         self.segments.list_changing(

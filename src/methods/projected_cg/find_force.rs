@@ -1,24 +1,24 @@
-//! Lines in plane strain with two periods, by approach: the search for the force of the approach.
+//! Lines in plane strain with two periods and a prescribed approach: the search for the force that belongs to the approach.
 //!
-//! The mean of the pressure displaces nothing there. Near full contact the force changes by far more than the approach, and iterations that change
-//! both at once take 110 to 390 products. With a force they take 20 to 60, as on other lines. So the force follows from a secant,
+//! On such a line a uniform pressure displaces nothing. Near full contact the force changes by far more than the approach, and an iteration that
+//! changes pressures and force at once takes 110 to 390 products. With a prescribed force it takes 20 to 60, as on other lines. So the problem is
+//! solved for several forces, each to a low accuracy. The next force follows from a secant (module `mean_gap` tells why in m):
 //!
 //! ```text
 //! F_(k+1) = F_k + (m - m_k) (F_k - F_(k-1))/(m_k - m_(k-1)),   m = ln(mean of h - approach)
 //! ```
 //!
-//! and each force is solved loosely (module `mean_gap`: why m).
+//! *The approach that belongs to a force.* It is a weighted mean of h + u over C, with weights of sum 1. Its error is the product of two errors: that
+//! of p, and that of the weights as the pressure of a flat punch on C. The change of p with the force is nearly such a pressure, and gives the
+//! weights.
 //!
-//! *Approach of a force.* A mean of e over C, with weights of sum 1, is the approach of the solution up to the product of two errors: that of
-//! p, and that of the weights as pressures of a flat punch on C. The change of p with the force is such a pressure.
+//! *The start for the next force.* p is extrapolated along its change with the force. For the first force that is larger a uniform pressure is added
+//! instead, because it displaces nothing. Elements then leave C, which is faster than if they entered.
 //!
-//! *Start of a force.* p is extrapolated along its change with the force. For the first larger force a uniform pressure, which displaces
-//! nothing, is added instead. Elements then leave C, which is faster than entering it.
+//! *Near the wanted force* the approach is prescribed, and p moves along its change with the force in each step (module `along`).
 //!
-//! *Near the force* p moves along its change in each step by approach (module `along`).
-//!
-//! Measured on 600 random lines of 64 to 8000 elements, tolerances from 1e-4 to 1e-8: median 51 products, 98 % below 155, at most 355. With
-//! approaches as means over C and no extrapolation: median 152, 10 % above 300.
+//! On 600 random lines of 64 to 8000 elements, with tolerances from 1e-4 to 1e-8, the median is 51 products; 98 % take fewer than 155, and none more
+//! than 355. With unweighted means over C and without extrapolation the median is 152, and 10 % take more than 300.
 
 use super::deflation::Last;
 use super::level_task::LevelTask;
@@ -32,60 +32,65 @@ use crate::progress::Goal;
 use crate::scene::Load;
 use crate::sums::{in_blocks, mean};
 
-/// Residual of the solve of the first force; of the next ones, relative to the distance between approaches.
+/// The relative residual to which the first force is solved.
 const FIRST_RESIDUAL: f64 = 0.1;
+/// The residual of the next forces, relative to the distance between the found and the wanted approach.
 const RESIDUAL_PER_DISTANCE: f64 = 0.3;
-/// The force changes by at most this factor. 60 lines of 3000 and 9600 elements take at most 85 products; with 4, 400.
+/// The force changes by at most this factor at once. 60 lines of 3000 and 9600 elements then take at most 85 products; with a factor of 4, 400.
 const LARGEST_FORCE_RATIO: f64 = 2.0;
-/// Largest extrapolation of p, relative to its last change.
+/// The largest extrapolation of p, relative to its last change.
 const LARGEST_EXTRAPOLATION: f64 = 4.0;
-/// A force is near if m has to change by at most the first number times its last change, and by less than the second.
+/// A force is near the wanted one if m has to change by at most the first number times its last change, and by less than the second number.
 const NEAR_FORCE: (f64, f64) = (0.3, 0.5);
-/// Allowed error of the approach, relative to the tolerance.
+/// The allowed error of the approach, relative to the tolerance.
 const APPROACH_ERROR: f64 = 0.5;
-/// Most forces, and most iterations along the change of p. More follow if these reduced the residual to this part.
+/// The largest number of forces in one call.
 const MOST_FORCES: usize = 20;
+/// The largest number of iterations along the change of p, at first.
 const MOST_ALONG: u64 = 40;
+/// More such iterations follow if these reduced the residual to less than this part.
 const ALONG_GAIN: f64 = 0.1;
-/// Round-off of u in single precision, in the residual and in the approach.
+/// The round-off of u in single precision, in the residual and in the approach.
 const ROUNDING: f64 = f32::ROUND_OFF;
-/// The part of the elements in C above which a uniform pressure is added.
+/// A uniform pressure is added if more than this part of all elements is in C.
 const UNIFORM_SHARE: f64 = 0.25;
 
-/// Pressures of a force, with its approach and residual.
+/// The solution for one force.
 #[derive(Default)]
 struct Known {
     p: Vec<f64>,
     force: f64,
     approach: f64,
+    /// The relative residual to which it was solved.
     residual: f64,
 }
 
-/// A search for the force.
+/// The search for the force.
 #[derive(Default)]
 pub(super) struct FindForce {
-    /// The last force with a gap, and its m.
+    /// The last force with a mean gap, and its m.
     last: Option<(f64, f64)>,
-    /// The least force without a gap.
+    /// The least force without a mean gap.
     full: Option<f64>,
-    /// An earlier solution, from which the last one differs by more than its residual.
+    /// An earlier solution, which differs from the last one by more than the residual.
     before: Known,
     /// The residual to which the next force is solved.
     tolerance: Option<f64>,
-    /// Whether steps along the change of p met the goal or reduced the residual by much, and whether they failed.
+    /// Whether steps along the change of p met the goal or reduced the residual by much.
     is_near: bool,
+    /// Whether steps along the change of p failed.
     has_failed: bool,
 }
 
 impl FindForce {
-    /// Whether the approach is solved by a search for the force.
+    /// Whether a task is solved by a search for the force.
     pub(super) fn serves<S: AdmissibleSet>(task: &LevelTask<'_, '_, S>, goal: &Goal) -> bool {
         let by_approach = matches!(task.state.load, Load::Approach(_));
-        let presses = || in_blocks(task.state.p.iter().copied()) > 0.0;
-        by_approach && !S::FIXED && !S::LIMITED && !goal.by_update() && task.level.is_mean_free_line() && presses()
+        let carries = || in_blocks(task.state.p.iter().copied()) > 0.0;
+        by_approach && !S::FIXED && !S::LIMITED && !goal.by_update() && task.level.is_mean_free_line() && carries()
     }
 
-    /// Begins another grid or another solve.
+    /// Begins the search anew, on another grid or for another solve.
     pub(super) fn begin(&mut self) {
         *self = FindForce {
             before: Known { p: std::mem::take(&mut self.before.p), ..Known::default() },
@@ -94,12 +99,12 @@ impl FindForce {
         self.before.p.clear();
     }
 
-    /// Bytes held.
+    /// Bytes of the earlier solution.
     pub(super) fn bytes(&self) -> usize {
         size_of_val(&self.before.p[..])
     }
 
-    /// Solves by approach with several forces, at most `at_once` iterations for each.
+    /// Solves for the approach by solves for several forces, each with at most `at_once` iterations.
     pub(super) fn run<S: AdmissibleSet>(
         &mut self,
         task: &mut LevelTask<'_, '_, S>,
@@ -146,7 +151,7 @@ impl FindForce {
         Ok(End::Stagnated)
     }
 
-    /// Solves by the force that p carries, and finds its approach. `mean`: the mean of h.
+    /// Solves for the force that p carries, and finds the approach that belongs to this force. `mean` is the mean of h.
     fn run_force<S: AdmissibleSet>(
         &mut self,
         task: &mut LevelTask<'_, '_, S>,
@@ -169,7 +174,7 @@ impl FindForce {
         Ok((end, Found { wanted, force, approach, residual: goal.tolerance, size, mean }))
     }
 
-    /// Whether steps along the change of p follow.
+    /// Whether steps along the change of p follow, because the force is near the wanted one and the change of p is accurate enough.
     fn goes_along(&self, found: &Found) -> bool {
         let Known { p, approach, .. } = &self.before;
         let (m, missing) = (found.m(found.approach), found.m(found.wanted) - found.m(found.approach));
@@ -178,13 +183,13 @@ impl FindForce {
         !p.is_empty() && !self.has_failed && !found.is_full() && is_near && self.clearness(found) > 1.0
     }
 
-    /// The change of the approach from the earlier solution, relative to their residuals.
+    /// How clearly the last solution differs from the earlier one: the change of the approach, relative to the larger of both residuals.
     fn clearness(&self, found: &Found) -> f64 {
         let Known { approach, residual, .. } = &self.before;
         (found.approach - approach).abs() / (found.residual.max(*residual) * found.size)
     }
 
-    /// The next force.
+    /// Chooses the next force: by the secant, between forces with and without a mean gap, or as a first change.
     fn next_force(&mut self, found: &Found) -> f64 {
         let (force, m) = (found.force, found.m(found.approach));
         if found.is_full() {
@@ -204,9 +209,9 @@ impl FindForce {
         }
     }
 
-    /// Iterates by approach, along the change of p in each step. Restores p on failure.
+    /// Iterates with the prescribed approach, where p moves along its last change in each step. Restores p if the iteration fails.
     fn run_along<S: AdmissibleSet>(&mut self, task: &mut LevelTask<'_, '_, S>, goal: &Goal) -> Result<End> {
-        // The pressures to restore on failure.
+        // The pressures to restore if the iteration fails.
         let start = computed(task.state.p.iter().copied(), "pressures by approach")?;
         let last = Last { p: &self.before.p, u: None };
         let end = task.run(task.state.u_is, Some(last), goal)?;
@@ -220,7 +225,7 @@ impl FindForce {
         Ok(end)
     }
 
-    /// The approach of the force.
+    /// The approach that belongs to the force that p carries: the mean of h + u over C, weighted by the change of p.
     fn approach_of(&self, state: &State) -> f64 {
         let (mut sum, mut weights) = (0.0, 0.0);
         for (i, before) in self.before.p.iter().enumerate().filter(|(i, _)| state.contact[*i]) {
@@ -230,7 +235,7 @@ impl FindForce {
         Some(sum / weights).filter(|approach| approach.is_finite()).unwrap_or(state.approach)
     }
 
-    /// Sets p for the next force; false if there is none.
+    /// Sets p to the start for the next force. Returns false if no next force is found.
     fn change(&mut self, state: &mut State, found: &Found) -> Result<bool> {
         if !(found.force > 0.0 && found.force.is_finite()) {
             return Ok(false);

@@ -1,8 +1,8 @@
-//! Lines in plane strain: the entry of elements into C, and the deflation direction.
+//! Lines in plane strain: which elements enter C, and the deflation direction.
 //!
-//! By approach the residual's mean over C is due to the missing force. The pressure of a flat punch on C removes it: joined pieces (module `punches`)
-//! approximate this pressure, the deflation direction. With two periods it displaces almost nothing near full contact; then the force is found for
-//! the approach (module `find_force`).
+//! If the approach is prescribed, the mean of the residual over C is due to a missing force. The pressure of a flat punch on C removes this mean, and
+//! serves as the deflation direction. The joined pieces of C (module `punches`) approximate this pressure. With two periods such a pressure displaces
+//! almost nothing near full contact; then module `find_force` searches for the force that belongs to the approach.
 
 use super::preconditioner::Preconditioner;
 use super::vectors::Iteration;
@@ -11,8 +11,8 @@ use crate::operator::fft::Real;
 use crate::scene::Load;
 use crate::sums::Sums;
 
-/// Penetration at which an element enters, in standard deviations of the residual. Three lines of 9600 elements with two periods take 43, 66 and 48
-/// products with 3, and 58, 80 and 62 with 10 (by force, from a uniform pressure). With 1 they do not converge.
+/// The penetration from which an element enters C, in standard deviations of the residual. Three lines of 9600 elements with two periods take 43, 66
+/// and 48 products with 3, and 58, 80 and 62 with 10 (prescribed force, from a uniform pressure). With 1 they do not converge.
 const ALLOWED_DEVIATIONS: f64 = 3.0;
 
 impl<T: Real> Iteration<T> {
@@ -21,7 +21,7 @@ impl<T: Real> Iteration<T> {
         self.preconditioner.as_ref().is_some_and(Preconditioner::has_punches)
     }
 
-    /// Before the first iteration: chooses whether components of C are treated as flat punches, and the allowed penetration.
+    /// Before the first iteration: chooses whether the preconditioner treats the pieces of C as flat punches, and sets the allowed penetration.
     pub(super) fn choose_punches(&mut self, state: &State) {
         self.allowance = 0.0;
         let Some(m) = &mut self.preconditioner else { return };
@@ -33,10 +33,10 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Sets the penetration from which exterior elements enter: the mean of the residual, in z, plus
-    /// [`ALLOWED_DEVIATIONS`] standard deviations. Smaller penetrations are as uncertain as the residual; most such
-    /// elements would leave at once. With a prescribed approach the mean may be negative. As with a prescribed force,
-    /// distances are relative to their mean over C.
+    /// Sets the penetration from which exterior elements enter C: the mean of the residual over C, which is in z, plus [`ALLOWED_DEVIATIONS`]
+    /// standard deviations. Smaller penetrations are as uncertain as the residual, and most elements with such a penetration would leave C at once.
+    /// With a prescribed approach the mean is not 0, and may be negative. By subtracting it, distances are relative to their mean over C, as with a
+    /// prescribed force.
     pub(super) fn find_allowance(&mut self) {
         let mut sums = Sums::new();
         sums.add([], [&self.z], |[], [r]| [r, r * r]);

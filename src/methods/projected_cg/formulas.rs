@@ -1,4 +1,4 @@
-//! The formulas of the passes over the contact area, element by element.
+//! The formulas of the loops over the contact area, for one element. Symbols are those of module `iteration`.
 
 use pulp::Simd;
 
@@ -8,10 +8,10 @@ use crate::contact::AdmissibleSet;
 use crate::lanes::{Holds, Lanes};
 use crate::methods::fields::Stored;
 
-/// An element was clipped if the forecast step leaves at most this part of its pressure: round-off of single precision.
+/// An element counts as clipped if the forecast step leaves at most this part of its pressure, which is round-off of single precision.
 pub(super) const CLIPPED_SHARE: f64 = f32::ROUND_OFF;
 
-/// The sum of `h - approach + u`, u being that after `update` without w.
+/// The sum of `h - approach + u`, where u is that after `update` (without a step along the deflation direction).
 #[derive(Clone, Copy)]
 pub(super) struct Distance<'a> {
     pub(super) update: &'a Update,
@@ -27,7 +27,7 @@ impl Terms<2, 2, 1> for Distance<'_> {
     }
 }
 
-/// r = -e; and the sums of e^2 and `(h - approach)^2`.
+/// Sets r = -e; sums e^2 and `(h - approach)^2`; or sums (r, d) and (r, r).
 #[derive(Clone, Copy)]
 pub(super) struct Residual {
     pub(super) approach: f64,
@@ -49,7 +49,7 @@ impl Terms<2, 0, 2> for Residual {
     }
 }
 
-/// (r, d) of the deflation direction d, and (r, r).
+/// The sums (r, d), with the deflation direction d, and (r, r).
 impl Terms<2, 1, 2> for Residual {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u]: [Lanes<S>; 2], [d]: [Lanes<S>; 1]) -> [Lanes<S>; 2] {
@@ -58,7 +58,7 @@ impl Terms<2, 1, 2> for Residual {
     }
 }
 
-/// The sums of t, z, q, and (z, q).
+/// The sums of t, of z and of q, and the inner product (z, q).
 #[derive(Clone, Copy)]
 pub(super) struct Conjugate;
 
@@ -69,7 +69,7 @@ impl Terms<0, 3, 4> for Conjugate {
     }
 }
 
-/// `t = z - mean + beta t`, clipped so that the forecast step does not take p below 0.
+/// Sets `t = z - mean + beta t`, clipped so that the forecast step does not take p below 0.
 #[derive(Clone, Copy)]
 pub(super) struct Direction {
     pub(super) mean: f64,
@@ -88,7 +88,7 @@ impl Becomes<1, 1> for Direction {
     }
 }
 
-/// `t = t - shift`, clipped as by [`Direction`].
+/// Sets `t = t - shift`, clipped as by [`Direction`].
 #[derive(Clone, Copy)]
 pub(super) struct Lowered {
     pub(super) shift: f64,
@@ -117,7 +117,7 @@ impl Terms<1, 1, 3> for Free {
     }
 }
 
-/// (r, t), (t, q), (t, t), the sum of |t|, (p, p).
+/// The sums (r, t), (t, q), (t, t), the sum of |t|, (p, p).
 #[derive(Clone, Copy)]
 pub(super) struct StepTerms {
     pub(super) approach: f64,
@@ -131,7 +131,7 @@ impl Terms<3, 2, 5> for StepTerms {
     }
 }
 
-/// (r, t), (t, q), (t, t), the sum of |t|, (p, p); and with `d = approach - h` (p, d), (t, d), (p, u), (p, q).
+/// The same sums, then with `d = approach - h` the sums (p, d), (t, d), (p, u), (p, q).
 impl Terms<3, 2, 9> for StepTerms {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Lanes<S>; 3], [t, q]: [Lanes<S>; 2]) -> [Lanes<S>; 9] {
@@ -140,7 +140,7 @@ impl Terms<3, 2, 9> for StepTerms {
     }
 }
 
-/// (r, t), (t, q), (t, t), the sum of |t|, (p, p); and with a deflation direction d (r, d), (q, d).
+/// The same sums, then with the deflation direction d the sums (r, d), (q, d).
 impl Terms<3, 3, 7> for StepTerms {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Lanes<S>; 3], [t, q, d]: [Lanes<S>; 3]) -> [Lanes<S>; 7] {
@@ -149,7 +149,7 @@ impl Terms<3, 3, 7> for StepTerms {
     }
 }
 
-/// `(p, approach - h)` and (p, u), u being that after `update` before scaling.
+/// The sums `(p, approach - h)` and (p, u), where u is that after `update` before scaling.
 #[derive(Clone, Copy)]
 pub(super) struct WorkAndEnergy<'a> {
     pub(super) approach: f64,
@@ -176,7 +176,7 @@ impl Terms<1, 0, 1> for Carried {
     }
 }
 
-/// `p = factor p`.
+/// Sets `p = factor p`.
 #[derive(Clone, Copy)]
 pub(super) struct Scale {
     pub(super) factor: f64,
@@ -189,7 +189,7 @@ impl Becomes<0, 0> for Scale {
     }
 }
 
-/// `p = p + alpha t + gamma d`.
+/// Sets `p = p + alpha t + gamma d`.
 #[derive(Clone, Copy)]
 pub(super) struct Moved {
     pub(super) alpha: f64,
@@ -203,14 +203,14 @@ impl Becomes<0, 2> for Moved {
     }
 }
 
-/// Step (4.1): elements that this move takes beyond a bound, and clipped elements, whose pressure or distance from the limit the forecast step
-/// reduces to round-off.
+/// Step (4.1): chooses the elements whose p the move takes beyond a bound, and clipped elements: the forecast step reduces their p, or their distance
+/// from the limit, to round-off.
 #[derive(Clone, Copy)]
 pub(super) struct Leaving<Set> {
     pub(super) moved: Moved,
     pub(super) forecast: Option<f64>,
     pub(super) set: Set,
-    /// Elements of the grid.
+    /// The number of elements of the grid.
     pub(super) elements: usize,
 }
 
@@ -225,7 +225,7 @@ impl<Set: AdmissibleSet> Wanted<2> for Leaving<Set> {
             leaves = leaves | foreseen.is_at_most(CLIPPED_SHARE * p);
         }
         if Set::LIMITED {
-            // Beyond the last element a vector is padded.
+            // The last vector is padded: lanes beyond the last element have no limit.
             let limits = p.of_each(|lane| if first + lane < *elements { set.limit(first + lane) } else { 0.0 });
             leaves = leaves | limits.is_below(to);
             if let Some(foreseen) = foreseen {
@@ -236,7 +236,7 @@ impl<Set: AdmissibleSet> Wanted<2> for Leaving<Set> {
     }
 }
 
-/// `u = factor (u + alpha q + gamma w + A d)`, from q, or from q, w and z, which holds A d if it is known.
+/// Sets `u = factor (u + alpha q + gamma w + A d)`: from q alone, or from q, w and z. z holds A d if `is_corrected`.
 #[derive(Clone, Copy)]
 pub(super) struct MovedU<'a>(pub(super) &'a Update);
 
@@ -255,13 +255,13 @@ impl Becomes<1, 3> for MovedU<'_> {
     }
 }
 
-/// Step (4.2): elements outside C that enter it.
+/// Step (4.2): chooses the elements that enter C.
 #[derive(Clone, Copy)]
 pub(super) struct Entering<'a> {
     pub(super) approach: f64,
     /// Whether the contact area is given.
     pub(super) is_fixed: bool,
-    /// Whether each element is at its limit; empty: none is.
+    /// For each element, whether it is at its limit. Empty if none is.
     pub(super) held: &'a [bool],
 }
 
@@ -275,7 +275,7 @@ impl Wanted<1> for Entering<'_> {
         if self.held.is_empty() {
             return e.is_below(zero);
         }
-        // 1 at the limit, -1 elsewhere.
+        // The side is 1 at the limit, where an element enters if e > 0, and -1 elsewhere, where it enters if e < 0.
         let side = e.of_each(|lane| if self.held.get(first + lane) == Some(&true) { 1.0 } else { -1.0 });
         zero.is_below(side * e)
     }

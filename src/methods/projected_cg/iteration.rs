@@ -4,43 +4,42 @@
 //! r = -e on C, 0 outside          (prescribed force: the approach is the mean of h + u over C)
 //! z = M r on C                    M: the inverse of a circulant near A
 //! t = z + beta t on C,            beta = max(0, -(z, q)/(t, q)): the new direction is conjugate to the last
-//! t = max(t, -p/alpha')           alpha': a forecast of alpha
+//! t = max(t, -p/alpha')           alpha': a forecast of alpha. Elements with t < -p/alpha' are *clipped*
 //! q = A t,                        alpha = (r, t)/(t, q)
 //! p = p + alpha t, u = u + alpha q
 //! 4.1  elements with p < 0, and those clipped at -p/alpha', leave C with p = 0
 //! 4.2  elements with e < 0 enter C
 //! ```
 //!
-//! z and t have mean zero over C, so directions carry no force. If elements are clipped, t is lowered until its sum is 0 again. Then only the error
-//! of the forecast is truncated. With a prescribed force p is scaled to carry the force again. With a prescribed approach p is
-//! scaled to the least energy after each step (module `energy`), or moves along the last change in time (module `along`), or along a deflation
-//! direction where few elements carry much of the force (module `uniform`).
+//! *Directions without force.* z and t have mean zero over C, so a step along t does not change the force. Clipping increases the sum of t, which is
+//! lowered until its sum is 0 again. The force comes from a second change of p after the step along t:
 //!
-//! Why t is lowered: scaling p by one percent changes u by one percent, and the depth of a spike may be a thousand times the roughness of all other
-//! elements. Clipped directions that are not lowered carry force. Scaling then takes this force from the spike, and C alternates for ever. Measured
-//! on planes of 128 x 128 with a spike: 10 to 12 iterations on the finest grid; without lowering 23, 745, or no convergence. On rough surfaces
-//! lowering saves one product in ten.
+//! - With a prescribed force, p is scaled to carry the force.
+//! - With a prescribed approach, p is scaled to the least energy (module `energy`), or moves along a deflation direction: the last change in time
+//!   (module `along`), or a uniform pressure where few elements carry much of the force (module `uniform`).
+//! - With a prescribed approach, directions carry force in three cases only: on a given C, after an element has reached its limit, or while p = 0
+//!   cannot be scaled.
 //!
-//! Directions carry force only with a prescribed approach, in three cases: on a given C, after an element has reached its limit, or while p = 0
-//! cannot be scaled.
+//! The reason is that a residual which is uniform over C is the displacement by the pressure of a flat punch on C. M approximates this pressure
+//! poorly, and p itself approximates it better. Measured products to 1e-6 with a prescribed approach, with directions that carry force and without:
+//! ellipse 16 x 16 11.5 and 8.5, 64 x 64 11 and 8, 512 x 512 4.9 and 4.3; rough surface 512 x 512 19.3 and 11.
 //!
-//! Why: a uniform residual over C is the displacement of a flat punch on C. M approximates the punch's pressure poorly, and p approximates it better.
-//! Measured products to 1e-6 with a prescribed approach, first with directions that carry force, then without: ellipse 16 x 16 11.5 and 8.5, 64 x 64
-//! 11 and 8, 512 x 512 4.9 and 4.3; rough surface 512 x 512 19.3 and 11.
+//! *Why t is lowered.* Scaling p by one percent changes u by one percent, and the depth of a spike may be a thousand times the roughness of all other
+//! elements. A clipped direction that is not lowered carries force, which the scaling then takes from the spike, and C alternates for ever. Planes of
+//! 128 x 128 with a spike take 10 to 12 iterations on the finest grid; without lowering 23, 745, or no convergence. On rough surfaces lowering saves
+//! one product in ten.
 //!
-//! *Truncation without a product:* module `truncation`.
+//! *Truncation* of negative pressures changes p without a product: see module `truncation`. After a large truncation pressures may be far too large:
+//! a coarse grid's h is a mean, with which white noise is in full contact. Then all of C may leave and enter in turn, for ever. Scaling prevents
+//! that. Of 66 scenes of white noise with a prescribed approach, 19 failed without scaling, none with it.
 //!
-//! *After a large truncation.* Truncation increases the sum of p. Pressures may be far too large: a coarse grid's h is a mean, with which white noise
-//! is in full contact. Then all of C may leave and enter in turn, for ever. Scaling prevents that. Measured on 66 scenes of white noise with a
-//! prescribed approach: 19 failed without scaling, none with it.
+//! *The first step.* If u only approximates A p, after an interpolation from a coarser grid, [`Iteration::correct`] makes one step of a fixed length,
+//! truncates, and then computes u. This takes one product instead of three. A prediction from earlier solutions, whose u is A p, may be negative and
+//! is truncated. If the correction of this truncation is large, the first step has the length of the forecast, so that its product includes the whole
+//! correction.
 //!
-//! *The first step* after a prolongation needs no conjugate direction. If u only approximates A p, [`Iteration::correct`] makes one step of
-//! a fixed length, truncates, and then computes u. This takes one product instead of three. A prediction from earlier solutions, whose u
-//! is A p, may be negative and is truncated. If the correction of this truncation is large, the first step has the length of the forecast.
-//! Then its product includes the whole correction.
-//!
-//! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change of p, not to p.
-//! So directions in single precision lead to a solution in double precision.
+//! *Precision.* p and u are double. t, q and z may be single, because their rounding errors are relative to the change of p, not to p. So directions
+//! in single precision lead to a solution in double precision.
 
 use super::search::{Search, FIRST_FORECAST};
 use super::step_sums::{StepSums, Update};
@@ -49,56 +48,57 @@ use crate::contact::{AdmissibleSet, NonNegative, State};
 use crate::operator::fft::Real;
 use crate::progress::Goal;
 
-/// A correction is deferred if it is at most this fraction of the step, both as sums of absolute pressures. Measured: the number of
-/// products hardly varies for values from 0.02 to 0.4.
+/// A correction is deferred if it is at most this fraction of the step. Both are measured by the sum of absolute changes of pressures. The number of
+/// products hardly varies for fractions from 0.02 to 0.4.
 pub(super) const LARGEST_DEFERRED: f64 = 0.1;
-/// The length of a first step without a direction: the optimum for eigenvalues from 1 to 4.
+/// The length of a first step whose alpha is not computed: the optimum if the eigenvalues of M A lie between 1 and 4.
 const FIRST_STEP: f64 = 2.0 / (1.0 + 4.0);
-/// The longest step over the forecast one. Elements were clipped for the forecast length, and a longer step truncates far more than
-/// it gains. Strips of two periods do not converge without this bound.
+/// The largest alpha, relative to the forecast. Elements are clipped for the forecast, and a longer step truncates far more than it gains. Strips
+/// with two periods do not converge without this bound.
 const LONGEST_STEP: f64 = 2.0;
-/// The rounding of directions leaves short waves in p that are hardly visible in the residual. So without a fresh u the residual is
-/// reduced to no less than this many roundings of its first value.
+/// The round-off of directions leaves short waves in p that are hardly visible in the residual. Therefore the iteration ends, for a fresh u, when the
+/// residual falls to this many units of round-off of its first value.
 const ROUNDINGS: f64 = 800.0;
-/// Iterations without a new least residual after which another method takes over, because the contact area may cycle. Measured on 162
-/// scenes (ellipse, rough surface, wheel and rail, white noise): 20 and 40 give the same results.
+/// The iteration ends after this many iterations without a new smallest residual, because the contact area may cycle. On 162 scenes (ellipse, rough
+/// surface, wheel and rail, white noise) 20 and 40 give the same results.
 const PATIENCE: u32 = 20;
-/// After an element has reached its limit, a new residual counts as progress only below this fraction of the least one. Measured on random scenes
-/// with limits that took more than 120 products with a fraction of 1: half as many products. PATIENCE stays as it is: on one rough surface of 256 x
-/// 256 elements nine iterations bring no progress and later ones do.
+/// After an element has reached its limit, a residual counts as progress only below this fraction of the smallest one so far. This halves the number
+/// of products on random scenes that take more than 120 with a fraction of 1. [`PATIENCE`] is the same with limits: on one rough surface of 256 x 256
+/// elements nine iterations bring no progress and later ones do.
 const PROGRESS_AT_LIMITS: f64 = 0.7;
-/// The measures of one iteration.
+
+/// What one iteration has changed.
 #[derive(Clone, Copy, Debug)]
 pub struct Cycle {
-    /// Elements that left or entered C.
+    /// The number of elements that left or entered C.
     pub changes: u64,
-    /// rms over C of the change of p.
+    /// An upper bound on the rms over C of the change of p.
     pub update: f64,
-    /// rms over C of p before the iteration.
+    /// The rms over C of p before the iteration.
     pub pressure: f64,
-    /// Relative residual over C after the iteration.
+    /// The relative residual over C after the iteration.
     pub residual: f64,
-    /// Products in the iteration.
+    /// The number of products in the iteration.
     pub products: u64,
 }
 
 /// How the iteration on one grid ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// The criterion holds with the recursively updated u.
+    /// The criterion holds with the u that was updated step by step.
     Met,
-    /// The iterations allowed are used up.
+    /// All iterations are used up.
     Limit,
-    /// The caller cancelled.
+    /// The caller has cancelled the solve.
     Cancelled,
     /// `(t, q) <= 0`, by round-off or because the operator is not positive definite.
     Breakdown,
-    /// There is no progress any more.
+    /// The residual no longer decreases.
     Stagnated,
 }
 
 impl<T: Real> Iteration<T> {
-    /// One step of a fixed length from a u that approximates A p, with 4.2 before and 4.1 after it. Afterwards u does not approximate A p.
+    /// Makes one step of a fixed length from a u that approximates A p, with step (4.2) before and (4.1) after. Afterwards u is stale.
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
         self.deflation.forget();
         if self.preconditioner.is_some() {
@@ -124,7 +124,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Iterates from a state whose u is A p; p may be negative. `after_cycle` receives each iteration and returns whether to continue.
+    /// Iterates from a state whose u is A p; p may be negative. `after_cycle` gets the measures of each iteration and returns whether to go on.
     pub fn run<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
@@ -170,7 +170,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// 4.1 and 4.2 before the first iteration.
+    /// Makes steps (4.1) and (4.2) before the first iteration, sets up the deflation direction, and moves p along it.
     fn begin<S: AdmissibleSet>(&mut self, state: &mut State, set: S, is_mean_free: bool) -> Search {
         self.forget_directions(state.grid.mx);
         self.truncation.clear();
@@ -182,7 +182,7 @@ impl<T: Real> Iteration<T> {
         } else if S::LIMITED {
             update.factor = self.carry_beside_limits(state).unwrap_or(1.0);
         }
-        // The truncation of a prediction is corrected before its residual is used.
+        // A predicted p is truncated. u is corrected for this before the residual is used.
         let products = u64::from(self.deflation.is_there() && self.truncation.sum() > 0.0);
         if products > 0 {
             self.correct_now();
@@ -200,13 +200,13 @@ impl<T: Real> Iteration<T> {
         Search { products, ..Search::new(self.preconditioner.as_ref().map(|_| first)) }
     }
 
-    /// One iteration, with r in z. None if there is no direction.
+    /// Makes one iteration; z holds r. Returns None if (t, q) is not positive or a sum is not finite.
     fn iterate<S: AdmissibleSet>(&mut self, state: &mut State, set: S, search: &mut Search) -> Option<Cycle> {
         // z = M r, t = max(z + beta t, -p/alpha'), and the deferred correction
         self.precondition(state);
-        let held_back = search.forecast.filter(|_| search.may_clip && !S::FIXED);
-        self.direct(state, search.tq, held_back);
-        held_back.filter(|_| S::LIMITED).into_iter().for_each(|forecast| self.hold_at_limit(state, set, forecast));
+        let clipping = search.forecast.filter(|_| search.may_clip && !S::FIXED);
+        self.direct(state, search.tq, clipping);
+        clipping.filter(|_| S::LIMITED).into_iter().for_each(|forecast| self.clip_at_limit(state, set, forecast));
         let forecast = search.forecast.unwrap_or(1.0);
         self.truncation.include(&mut self.t, forecast);
 
@@ -217,10 +217,10 @@ impl<T: Real> Iteration<T> {
             return None;
         }
         let alpha = self.step_length(&step, search, S::LIMITED && state.has_limited());
-        let alpha = held_back.map_or(alpha, |forecast| alpha.min(LONGEST_STEP * forecast));
-        let held_back = search.believed(alpha);
-        let near = S::LIMITED && (state.reached_limit || self.reaches_limit(state, set, alpha, held_back));
-        if near {
+        let alpha = clipping.map_or(alpha, |forecast| alpha.min(LONGEST_STEP * forecast));
+        let believed = search.believed(alpha);
+        let is_near_limit = S::LIMITED && (state.reached_limit || self.reaches_limit(state, set, alpha, believed));
+        if is_near_limit {
             self.deflation.forget();
             self.remember(state);
         }
@@ -229,10 +229,10 @@ impl<T: Real> Iteration<T> {
 
         // p = p + alpha t + gamma d, 4.1
         let gamma = self.gamma(&step, alpha);
-        let left = if S::LIMITED && !near {
-            self.update_pressures(state, NonNegative, (alpha, gamma), held_back)
+        let left = if S::LIMITED && !is_near_limit {
+            self.update_pressures(state, NonNegative, (alpha, gamma), believed)
         } else {
-            self.update_pressures(state, set, (alpha, gamma), held_back)
+            self.update_pressures(state, set, (alpha, gamma), believed)
         };
         self.leave_deflation(gamma);
         search.expect(alpha, self.preconditioner.is_some());
@@ -262,7 +262,8 @@ impl<T: Real> Iteration<T> {
         })
     }
 
-    /// alpha. It is the forecast if the product includes a large correction: in the first step, and while elements are at their limit.
+    /// The step length alpha. In the first step, and while elements are at their limit, alpha is the forecast if the product includes a large
+    /// correction: u then gets the whole correction.
     fn step_length(&self, step: &StepSums, search: &mut Search, limited: bool) -> f64 {
         let alpha = step.rt / step.tq;
         search.tq = step.tq;
@@ -276,6 +277,7 @@ impl<T: Real> Iteration<T> {
 }
 
 impl Cycle {
+    /// Whether the criterion of the goal holds. A residual of at most `floor` satisfies any tolerance of the residual.
     fn meets(&self, goal: &Goal, floor: f64) -> bool {
         if goal.by_update() {
             self.update <= goal.tolerance * self.pressure

@@ -1,4 +1,4 @@
-//! The iteration of one grid, on the window around its contact area.
+//! The iteration on one grid (a "level" of nested iteration), restricted to the window around its contact area.
 
 use super::inner::{in_either, Inner};
 use super::part::{enter, leave};
@@ -21,13 +21,14 @@ struct Windowed {
     inner: Inner,
     /// The units of the last iteration.
     units: Scaling,
-    /// The window's part of the state; none when the window is the whole grid, in the scene's own units.
+    /// The part of the state in the window, in the iteration's units. None if the window is the whole grid and the units are those of the scene: the
+    /// iteration then works on the state itself.
     part: Option<State>,
     /// Whether the iteration has the present coefficients.
     is_current: bool,
 }
 
-/// One grid.
+/// One grid, and the iteration on its window.
 pub struct Level {
     grid: Grid,
     coefficients: Coefficients,
@@ -35,14 +36,14 @@ pub struct Level {
     threads: Threads,
     /// None before the first iteration.
     windowed: Option<Windowed>,
-    /// The limits of the window's pressures, in its units, if a scene has limits.
+    /// The pressure limits of the window's elements in the iteration's units, if the scene has limits.
     limits: Vec<f64>,
-    /// The window to reuse if it fits; none: the next window depends on the state only.
+    /// The last window, which is used again if it fits. None: the next window depends on the state only.
     current: Option<Rectangle>,
 }
 
 impl Level {
-    /// A level without operators, which are set up when needed.
+    /// Creates the level of a grid. Its operators are set up when needed.
     pub fn new(grid: Grid, coefficients: Coefficients, precision: Precision, threads: &Threads) -> Level {
         Level {
             grid,
@@ -60,7 +61,7 @@ impl Level {
         self.window(state).is_full(&self.grid)
     }
 
-    /// Takes other coefficients on the same grid. The window's operators are kept, and updated when needed.
+    /// Replaces the coefficients on the same grid. The window's operators are updated when they are needed.
     pub fn renew(&mut self, coefficients: Coefficients) {
         self.coefficients = coefficients;
         if let Some(windowed) = &mut self.windowed {
@@ -68,12 +69,12 @@ impl Level {
         }
     }
 
-    /// The influence of an element on itself.
+    /// The displacement of an element by a unit pressure on itself.
     pub fn self_influence(&self) -> f64 {
         self.coefficients.self_influence()
     }
 
-    /// The threads of the passes.
+    /// The threads of the solve.
     pub fn threads(&self) -> &Threads {
         &self.threads
     }
@@ -103,14 +104,14 @@ impl Level {
         self.current = window;
     }
 
-    /// Bytes held.
+    /// Bytes of the coefficients and of the iteration on the window.
     pub fn bytes(&self) -> usize {
         let windowed = |w: &Windowed| w.inner.bytes() + w.part.as_ref().map_or(0, State::bytes);
         self.coefficients.bytes() + self.windowed.as_ref().map_or(0, windowed)
     }
 
-    /// Works on the part of `state` in the window around the contact area, then copies p, C and the approach back. `whole`: the operator of the whole
-    /// grid, if there is one.
+    /// Calls `work` with the part of `state` in the window around the contact area, in the iteration's units. Then copies p, C and the approach back.
+    /// `whole` is the operator of the whole grid in double precision, if it exists.
     pub(super) fn on_window<S: AdmissibleSet, R>(
         &mut self,
         (state, set): (&mut State, S),
@@ -145,20 +146,20 @@ impl Level {
         Ok(result)
     }
 
-    /// Frees the window's part of the state until it is needed.
+    /// Releases the memory of the window's part of the state until it is needed.
     pub fn rest(&mut self) {
         let part = self.windowed.as_mut().and_then(|windowed| windowed.part.as_mut());
         part.into_iter().for_each(State::rest);
     }
 
-    /// Copies the u of the last iteration, for other grids; infinite outside the window.
+    /// Sets the state's u to that of the last iteration, from which the next finer grid interpolates. u is infinite outside the window.
     pub fn take_displacements(&self, state: &mut State) {
         if let Some(Windowed { window, part: Some(part), .. }) = &self.windowed {
             window.insert(&self.grid, &part.u, &mut state.u, f64::INFINITY, &self.threads);
         }
     }
 
-    /// The window of an iteration from `state`.
+    /// The window of an iteration that starts from `state`.
     pub fn window(&self, state: &State) -> Rectangle {
         match self.coefficients.depends_on_place() {
             false => window::around(state, self.current.as_ref(), self.coefficients.is_even(&self.grid), &self.threads),
@@ -166,12 +167,13 @@ impl Level {
         }
     }
 
-    /// Whether contact fills less than half of a window that is not the whole grid: elements outside may enter.
+    /// Whether contact is scattered: it fills less than half of the window, and the window is not the whole grid. Elements outside may then enter C.
     pub fn is_scattered(&self, state: &State) -> bool {
         let window = self.window(state);
         !window.is_full(&self.grid) && 2 * state.contact_count() < window.count()
     }
 
+    /// Chooses the window for `state`, and sets up or updates the iteration on it.
     fn choose_window(&mut self, state: &State, whole: Option<&Operator<f64>>) -> Result<&mut Windowed> {
         let window = self.window(state);
         self.current = Some(window.clone());
@@ -185,7 +187,7 @@ impl Level {
         } else {
             Some(|| State::at_rest(grid, (state.load, state.approach), &self.threads))
         };
-        // The operator of a window depends on its size only.
+        // The operator of a window depends on the window's size, not on its position.
         let whole = whole.filter(|_| window.is_full(&self.grid));
         let threads = &self.threads.suited_to(grid.len());
         let inputs = Inputs { coefficients: &self.coefficients, factor: units.influence, whole, threads };

@@ -1,4 +1,4 @@
-//! A state on one grid, with the inputs of its iteration.
+//! One run of the iteration on one grid.
 
 use super::deflation::Last;
 use super::inner::{in_either, Inner};
@@ -9,21 +9,21 @@ use crate::error::Result;
 use crate::operator::Operator;
 use crate::progress::{Goal, Monitor};
 
-/// A state on one grid, with the inputs of its iteration except the goal.
+/// A state on one grid, and all that the iteration on it needs, except for the goal.
 pub(super) struct LevelTask<'a, 'm, S> {
     pub(super) level: &'a mut Level,
     pub(super) state: &'a mut State,
     pub(super) set: S,
     /// The operator of the whole grid in double precision, if the problem has one.
     pub(super) whole: Option<&'a Operator<f64>>,
-    /// Elements of the finest grid, for the work of products.
+    /// The number of elements of the finest grid, which gives the work units of a product.
     pub(super) finest: usize,
     pub(super) monitor: &'a mut Monitor<'m>,
 }
 
 impl<S: AdmissibleSet> LevelTask<'_, '_, S> {
-    /// Iterates on the window around the contact area, from displacements of this freshness; `last`: the solution before in time. Outside the window
-    /// u is unknown afterwards.
+    /// Iterates on the window around the contact area. `displacement` tells how accurately the state's u equals A p. `last` is an earlier solution,
+    /// which gives the deflation direction. Afterwards u is unknown outside the window.
     pub(super) fn run(&mut self, mut displacement: Freshness, last: Option<Last<'_>>, goal: &Goal) -> Result<End> {
         let LevelTask { level, state, set, whole, finest, monitor } = self;
         if displacement != Freshness::Exact {
@@ -53,7 +53,7 @@ impl<S: AdmissibleSet> LevelTask<'_, '_, S> {
         })?
     }
 
-    /// Improves p without a product, if u is near A p and known in all of the contact area; u is unknown afterwards.
+    /// Improves p by one step without a product, if u is known in all of the contact area. u must be near A p, and is unknown afterwards.
     pub(super) fn correct(&mut self) -> Result<()> {
         let LevelTask { level, state, set, whole, .. } = self;
         state.carry_force(*set, level.threads());

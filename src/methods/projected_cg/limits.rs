@@ -1,21 +1,25 @@
-//! Limits of the pressures, `0 <= p <= p_max`.
+//! The iteration with pressure limits, `0 <= p <= p_max`.
 //!
-//! The limit is a second bound: steps are clipped and pressures truncated at both, and elements truncated at their limit enter C again if e > 0. With
-//! a prescribed force pressures at their limit cannot be scaled up. The missing force,
+//! The limit is a second bound: steps are clipped and pressures truncated at both bounds. Elements truncated at their limit enter C again if e > 0.
+//!
+//! *Prescribed force.* Pressures at their limit cannot be scaled up. The missing force m is
 //!
 //! ```text
-//! m = force/(dx dy) - sum of p,
+//! m = force/(dx dy) - sum of p
 //! ```
 //!
-//! is restored by the next direction, evenly over C: sum of t = m/alpha'. The approach moves by (p, approach - h)/(sum of p) times m/(sum of p), as
-//! if it were proportional to the force. Otherwise a thin C between elements at their limit and the exterior area would stay in place while it
-//! carries all of m. If the force is exceeded by far, all of p is scaled down, which no limit forbids, and elements at their limit enter C.
+//! The next direction restores the missing force, evenly over C: its sum is m/alpha'. The approach changes by m/(sum of p) times the mean depth
+//! (p, approach - h)/(sum of p), as if depth were proportional to force. Otherwise a thin C between elements at their limit and the exterior area
+//! would stay in place while C carries all of m. If p carries far more than the force, all of p is scaled down, which no limit forbids, and elements
+//! at their limit enter C.
 //!
-//! Clipped elements go to their limit and enter C again if that was wrong. While the residual on C is far above their e, they wait: directions stay
-//! conjugate, and C converges first ("proportioning", Dostal, *Optimal Quadratic Programming Algorithms* (2009), section 5.8).
+//! *Waiting.* Clipped elements go to their limit and enter C again if that was wrong. While the residual on C is far above the e of these elements,
+//! they wait at their limit: directions stay conjugate, and C converges first ("proportioning", Dostal, *Optimal Quadratic Programming Algorithms*
+//! (2009), section 5.8).
 //!
-//! By approach no scaling prevents C from oscillating. Instead the step is shortened to the least energy whenever a product has just corrected all of
-//! u, as both ends of the step are then exact. The next product includes a large deferred correction as a whole, by a step of the forecast length.
+//! *Prescribed approach.* No scaling prevents C from oscillating. Instead the step is shortened to the least energy whenever a product has just
+//! corrected all of u, because the energies of both ends of the step are then known exactly. A large deferred correction is included in the next
+//! product as a whole, by a step of the forecast length.
 
 use super::formulas::Carried;
 use super::formulas::CLIPPED_SHARE;
@@ -28,22 +32,27 @@ use crate::operator::fft::Real;
 use crate::operator::reserve;
 use crate::scene::Load;
 
-/// Elements wait at their limit while their e is less than this part of the residual on C. Measured on 140 scenes
-/// (`examples/pressure_limits`): at 0, 0.1, 0.3, 0.4, 1 the work is 2.0, 1.71, 1.71, 1.7, 1.78 times that of the plain scene in the mean
-/// and 7.3, 4.2, 3.3, 3.3, 3.3 in the worst of 48.
+/// Elements wait at their limit while the norm of their e > 0 is less than this part of the norm of e on C. The work relative to that of the scene
+/// without limits, as the mean of 140 scenes and as the largest value of 48 scenes (`examples/pressure_limits`):
+///
+/// | value | 0 | 0.1 | 0.3 | 0.4 | 1 |
+/// |---|---|---|---|---|---|
+/// | mean | 2.0 | 1.71 | 1.71 | 1.7 | 1.78 |
+/// | largest | 7.3 | 4.2 | 3.3 | 3.3 | 3.3 |
 const WAITING_E: f64 = 0.4;
 
-/// Relative excess of force above which p is scaled down. Measured on 36 scenes (ellipse and rough surface of 64 to 256, limits of 0.3 to 0.9 of
-/// the greatest pressure): without scaling, the work is 1.16 times as much in the mean and 2.2 times in the worst case.
+/// If p carries more than the force by a larger part than this, p is scaled down. Without this scaling, the work is 1.16 times as much in the mean
+/// and
+/// 2.2 times in the worst of 36 scenes (ellipse and rough surface of 64 to 256, limits of 0.3 to 0.9 of the greatest pressure).
 const FORCE_EXCESS: f64 = 0.05;
 
 impl WithLimits {
-    /// Forgets the iteration before.
+    /// Forgets what the last iteration left.
     pub(super) fn forget(&mut self) {
         (self.missing, self.shift, self.residual, self.went_back) = (0.0, 0.0, 0.0, false);
     }
 
-    /// Whether elements that would enter C from their limit wait there.
+    /// Whether elements at their limit with e > 0 wait there instead of entering C: their e is small compared with the residual on C.
     pub(super) fn waits(&self, h: &[f64], u: &[f64], at_limit: &[bool], approach: f64) -> bool {
         let distances =
             h.iter().zip(u).zip(at_limit).filter(|(_, &at_limit)| at_limit).map(|((h, u), _)| h - approach + u);
@@ -52,13 +61,14 @@ impl WithLimits {
 }
 
 impl<T: Real> Iteration<T> {
-    /// Allocates the additional memory of a scene with limits.
+    /// Allocates the additional memory of a scene with pressure limits.
     pub fn reserve_for_limits(&mut self) -> Result<()> {
         Ok(reserve(&mut self.limits.known, self.t.len(), "pressures with a limit")?)
     }
 
-    /// With elements at their limit: scales p and the deferred corrections to carry the force as far as possible, and stores the missing force.
-    /// Returns the factor of the scaling; none if no element is at its limit.
+    /// If the force is prescribed and elements are at their limit: scales p and the deferred corrections down if p carries far too much; otherwise
+    /// stores the missing force and the change of the approach that it causes. Returns the factor of the scaling, or None if no element is at its
+    /// limit.
     pub(super) fn carry_beside_limits(&mut self, state: &mut State) -> Option<f64> {
         (self.limits.missing, self.limits.shift) = (0.0, 0.0);
         let Load::Force(force) = state.load else { return None };
@@ -80,15 +90,15 @@ impl<T: Real> Iteration<T> {
         let loaded = state.p.iter().zip(&state.h).filter(|(p, _)| **p > 0.0);
         let depth = loaded.map(|(p, h)| p * (state.approach - h)).sum::<f64>() / carried;
         self.limits.missing = pressures - carried;
-        // One step at most doubles the depth.
+        // The depth is at most doubled in one step.
         let shift = (self.limits.missing / carried).min(1.0) * depth;
         self.limits.shift = if shift.is_finite() { shift } else { 0.0 };
         Some(1.0)
     }
 
-    /// Scales p and the deferred corrections to carry the prescribed force. Returns the factor, with which u is to be
-    /// scaled. On a given area a negligible force does not determine the scale of p. Directions keep the force up to
-    /// round-off, which the next certificate detects.
+    /// Scales p and the deferred corrections to carry the prescribed force. Returns the factor, with which u is to be scaled. On a given contact area
+    /// a force that is negligible beside the sum of |p| does not determine the scale of p. Then p is not scaled: directions keep the force up to
+    /// round-off, and the next certificate detects this round-off.
     pub(super) fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
         let Load::Force(force) = state.load else { return 1.0 };
         if S::FIXED && state.is_cancelled(&self.threads) {
@@ -110,8 +120,8 @@ impl<T: Real> Iteration<T> {
         factor
     }
 
-    /// Clips the step of elements that the forecast step would take beyond their limit.
-    pub(super) fn hold_at_limit<S: AdmissibleSet>(&mut self, state: &State, set: S, forecast: f64) {
+    /// Clips t on elements that the forecast step would take beyond their limit.
+    pub(super) fn clip_at_limit<S: AdmissibleSet>(&mut self, state: &State, set: S, forecast: f64) {
         let [] = self.segments.sum_changing(&state.contact, &mut self.t, |block, t| {
             for (elements, local) in block.segments() {
                 let (p, t) = (&state.p[elements.clone()], &mut t[local]);
@@ -119,7 +129,7 @@ impl<T: Real> Iteration<T> {
                     for ((p, t), i) in p.iter().zip(t).zip(elements).filter(|(_, i)| state.contact[*i]) {
                         if p + forecast * t.to_double() > set.limit(i) {
                             let clipped = (set.limit(i) - p) / forecast;
-                            // A limit whose square is below the range of T is met by the whole step.
+                            // If the square of the clipped t is below the range of T, t is not clipped, and step (4.1) truncates p at the limit.
                             let is_in_range = clipped == 0.0 || T::of(clipped * clipped).to_double() > 0.0;
                             *t = if is_in_range { T::of(clipped) } else { *t };
                         }
@@ -130,7 +140,7 @@ impl<T: Real> Iteration<T> {
         });
     }
 
-    /// Whether this step brings an element to its limit or close to it.
+    /// Whether a step of the length alpha, or of the forecast if that is longer, brings any element to its limit or close to it.
     pub(super) fn reaches_limit<S: AdmissibleSet>(
         &mut self,
         state: &State,
@@ -151,7 +161,7 @@ impl<T: Real> Iteration<T> {
         reached > 0.0
     }
 
-    /// With a limit: keeps the pressures that u belongs to.
+    /// Stores the pressures for which u = A p: p minus the deferred corrections.
     pub(super) fn remember(&mut self, state: &State) {
         self.limits.known.clear();
         self.limits.known.extend_from_slice(&state.p);
@@ -160,8 +170,8 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// With a limit, after a product that corrected all of u: goes back along the change d of the pressures to the least energy, by
-    /// `s d` with `s = -(d, e)/(d, A d)`. Elements that left for a bound return to C.
+    /// After a product that corrected all of u: shortens the change d of the pressures to `s d`, which has the least energy if
+    /// `s = -(d, e)/(d, A d)`. Nothing changes unless 0 < s < 1. Elements that d had taken to a bound return to C.
     pub(super) fn step_back<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &mut Update) {
         debug_assert!(update.gamma == 0.0, "with limits nothing is predicted");
         let (mut work, mut energy) = (0.0, 0.0);
@@ -173,7 +183,7 @@ impl<T: Real> Iteration<T> {
             }
         }
         let s = work / energy;
-        // By force the change has a mean, whose energy is unknown before p is scaled: going back each time would cycle.
+        // If the force is prescribed, d has a mean, whose energy is unknown before p is scaled. Shortening each step would cycle.
         let not_again = std::mem::take(&mut self.limits.went_back) && matches!(state.load, Load::Force(_));
         if !(s > 0.0 && s < 1.0) || not_again {
             return;

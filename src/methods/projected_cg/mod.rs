@@ -1,5 +1,5 @@
-//! Projected, preconditioned conjugate gradients. They solve the whole problem on one grid, and are the fastest method known for it. Nested iteration
-//! calls them on each grid.
+//! Projected, preconditioned conjugate gradients: the production method. It solves for pressures and contact area together (module `iteration`), and
+//! is the fastest method of this library. Nested iteration uses it on each grid (module `coarse_grids`).
 
 mod along;
 mod coarse_grids;

@@ -1,4 +1,4 @@
-//! The window's part of a state: its copy to the iteration, in the iteration's units, and back.
+//! The part of a state in the window: copies it to the iteration, in the iteration's units, and back.
 
 use super::scaling::Scaling;
 use crate::contact::{AdmissibleSet, Freshness, State};
@@ -8,7 +8,7 @@ use crate::operator::reserve;
 use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
-/// Copies the window's part of a state to `part`, in the iteration's units. Memory of each array is freed after its copy.
+/// Copies the part of `state` in the window to `part`, in the iteration's units. The state's memory of p and of u is released after the copy.
 pub(super) fn enter<S: AdmissibleSet>(
     (window, units): (&Rectangle, &Scaling),
     state: &mut State,
@@ -49,7 +49,7 @@ pub(super) fn enter<S: AdmissibleSet>(
     Ok(())
 }
 
-/// Copies p, C and the approach from the window's part back to the state.
+/// Copies p, C, the elements at their limit and the approach from `part` back to the state. Outside the window p becomes 0.
 pub(super) fn leave<S: AdmissibleSet>(
     (window, units): (&Rectangle, &Scaling),
     part: &mut State,

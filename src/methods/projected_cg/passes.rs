@@ -1,4 +1,4 @@
-//! The passes over the segments of the contact area; their formulas are in `formulas`.
+//! The loops over the contact area: residual, search direction, step length. Module `formulas` has the formulas for one element.
 
 use super::formulas::{Conjugate, Direction, Distance, Free, Lowered, Residual, Scale, StepTerms};
 use super::step_sums::{Energy, StepSums, Update};
@@ -7,25 +7,25 @@ use crate::contact::State;
 use crate::operator::fft::Real;
 use crate::scene::Load;
 
-/// Largest force of a direction without force, relative to the sum of |t|.
+/// A direction counts as one without force if its sum is at most this part of the sum of |t|.
 const SMALL_FORCE: f64 = 1e-2;
-/// Most Newton steps.
+/// The largest number of Newton steps that lower t.
 const NEWTON_STEPS: u32 = 8;
 
-/// No arrays of the iteration's precision.
+/// An empty list of arrays in the precision T.
 pub(super) const fn none<'a, T>() -> [&'a [T]; 0] {
     []
 }
 
 impl<T: Real> Iteration<T> {
-    /// Finds the segments of a contact area from scratch.
+    /// Finds the segments of the whole contact area, whatever has changed.
     pub(super) fn find_contact(&mut self, state: &State) {
         self.segments.change_all();
         self.segments.find(&state.contact);
     }
 
-    /// With a prescribed force, for which there is no deflation direction: sets the approach to the mean over C of h + u, plus the shift with limits;
-    /// u is that after `update`.
+    /// If the force is prescribed: sets the approach to the mean over C of h + u, where u is that after `update`. With pressure limits the shift for
+    /// the missing force is added (module `limits`). With a prescribed force there is no deflation direction, so `update` has no part along it.
     pub(super) fn fit_approach(&mut self, state: &mut State, update: &Update) {
         if matches!(state.load, Load::Approach(_)) {
             return;
@@ -42,7 +42,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// z = r = -e on C, 0 outside; the relative residual.
+    /// Sets z = r = -e on C, 0 outside. Returns the relative residual, `||e|| / ||h - approach||` over C.
     pub(super) fn residual(&mut self, state: &State) -> f64 {
         let (State { h, u, contact, .. }, formula) = (state, Residual { approach: state.approach });
         let [rr, hh] = self.segments.sum_changing(
@@ -66,12 +66,12 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Whether directions need no force: p is scaled to the force or to the least energy, or moves along the deflation direction.
+    /// Whether directions carry no force, because p is scaled to the force or to the least energy, or moves along the deflation direction.
     fn is_without_force(&self, state: &State) -> bool {
         matches!(state.load, Load::Force(_)) || self.deflation.is_there() || self.is_scaled
     }
 
-    /// z = E^T M E z (module [`extension`](crate::methods::extension)).
+    /// Replaces z by E^T M E z (module [`extension`](crate::methods::extension)).
     pub(super) fn precondition(&mut self, state: &State) {
         let without_force = self.is_without_force(state);
         self.count_near(state);
@@ -80,7 +80,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Updates the preconditioner after a change of C: counts its elements and finds its pieces.
+    /// Updates the preconditioner after a change of C: the counts of the extension, and the pieces of C on a line in plane strain.
     pub(super) fn count_near(&mut self, state: &State) {
         let Some(preconditioner) = &mut self.preconditioner else { return };
         let (segments, before) = (&self.segments, self.counted.replace(self.segments.version()));
@@ -94,8 +94,8 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// t = z + beta t on C, 0 outside. Without force, t has mean zero over C, plus the missing force. With a forecast, steps are clipped at p = 0.
-    /// `tq` is (t, q) of the last direction, 0 if there is none.
+    /// Sets t = z + beta t on C, 0 outside. If directions carry no force, the sum of t is 0, or that of the missing force. If there is a `forecast`,
+    /// t is clipped so that the forecast step does not take p below 0. `tq` is (t, q) of the last direction, or 0 if t is not to be conjugate to it.
     pub(super) fn direct(&mut self, state: &State, tq: f64, forecast: Option<f64>) {
         let without_force = self.is_without_force(state);
         let missing = self.limits.missing / forecast.unwrap_or(1.0);
@@ -107,8 +107,8 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Lowers t where it is not clipped until its sum over C is `missing`, as clipped elements would add to the force. The sum is a convex function
-    /// of the shift: Newton's method converges from one side.
+    /// Lowers t by a constant where it is not clipped, until the sum of t over C is `missing`: clipping has increased this sum. The sum is a convex
+    /// function of the constant, so Newton's method converges from one side.
     fn remove_force(&mut self, state: &State, missing: f64, forecast: f64) {
         for _ in 0..NEWTON_STEPS {
             let (t, formula) = (&self.t[..], Free { forecast });
@@ -122,7 +122,8 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// The mean over C to subtract from z + beta t, and beta. Directions without force have the sum `missing`, others any sum.
+    /// Returns the constant that is subtracted from z + beta t, and beta. The constant gives t the sum `missing`; it is 0 if `missing` is None, when
+    /// directions may carry force.
     fn conjugate(&mut self, state: &State, missing: Option<f64>, tq: f64) -> (f64, f64) {
         if missing.is_none() && tq <= 0.0 {
             return (0.0, 0.0);
@@ -135,7 +136,7 @@ impl<T: Real> Iteration<T> {
         (missing.map_or(0.0, |missing| (z1 + beta * t1 - missing) / count), beta)
     }
 
-    /// The sums over C for the step length, and those of the energy if p is scaled.
+    /// Computes the sums over C for the step length, and those for the energy if p is scaled to the least energy.
     pub(super) fn step_sums(&mut self, state: &State) -> StepSums {
         if self.deflation.is_there() {
             return self.step_sums_beside_deflation(state);
@@ -151,7 +152,7 @@ impl<T: Real> Iteration<T> {
         StepSums { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: Some(energy) }
     }
 
-    /// p = factor p on C, and the deferred corrections likewise.
+    /// Multiplies p on C, and the deferred corrections, by a factor.
     pub(super) fn scale(&mut self, state: &mut State, factor: f64) {
         self.truncation.scale(factor);
         let State { p, contact, .. } = state;

@@ -1,11 +1,12 @@
-//! The preconditioner: the inverse of a circulant near A. If A contains the diagonal of a layer, it is a mix of several inverses.
+//! The preconditioner M: the inverse of a circulant near A. If elements have a layer of different compliances, M is a sum of several inverses:
 //!
 //! ```text
 //! M = sum over levels c_l of W_l (A + c_l)^-1 W_l
 //! ```
 //!
-//! The diagonal matrix W_l selects the elements whose compliance is near c_l (see [`Layer::levels`](crate::influence::Layer::levels)), so that M is
-//! symmetric and positive definite. It is applied as E^T M E (module [`extension`](crate::methods::extension)), with a separate E for each level.
+//! A is here the circulant without the layer. The diagonal matrix W_l selects the elements whose compliance is near c_l (see
+//! [`Layer::levels`](crate::influence::Layer::levels)), so that M is symmetric and positive definite. M is applied as E^T M E (module
+//! [`extension`](crate::methods::extension)), with a separate E for each level.
 
 use super::punches::Punches;
 use crate::error::Result;
@@ -17,20 +18,24 @@ use crate::operator::fft::Real;
 use crate::operator::{zeros, Operator, Workspace};
 use crate::threads::Threads;
 
-/// One circulant and its weights. Without weights they are 1.
+/// One term of the sum M.
 struct Part<T: Real> {
+    /// The inverse of the circulant A + c_l.
     inverse: Operator<T>,
+    /// The diagonal of W_l. Empty: all weights are 1.
     weights: Vec<T>,
-    /// An element's coefficient on itself, relative to that without a layer.
+    /// An element's influence on itself with the layer, relative to that without.
     compliance: f64,
 }
 
-/// M, and the memory that a mix needs.
+/// The preconditioner M, and the memory that a sum of several inverses needs.
 pub struct Preconditioner<T: Real> {
     parts: Vec<Part<T>>,
-    /// For a mix: r, a term of the sum, and M 1.
+    /// For a sum: the residual r.
     right: Vec<T>,
+    /// For a sum: one of its terms.
     term: Vec<T>,
+    /// For a sum: the product M 1, where 1 is 1 on C.
     unit: Vec<T>,
     /// The flat punches of a line in plane strain.
     punches: Option<Punches>,
@@ -39,7 +44,7 @@ pub struct Preconditioner<T: Real> {
 }
 
 impl<T: Real> Preconditioner<T> {
-    /// The preconditioner of an operator whose coefficients are multiplied by `factor`. None if the circulant is not positive.
+    /// Sets up the preconditioner of an operator whose coefficients are multiplied by `factor`. None if a circulant is not positive definite.
     pub fn new(
         coefficients: &Coefficients,
         factor: f64,
@@ -68,37 +73,39 @@ impl<T: Real> Preconditioner<T> {
         }))
     }
 
-    /// An operator that determines the workspace of products by M.
+    /// One of the inverses. A workspace for it serves all products by M.
     pub fn inverse(&self) -> &Operator<T> {
         &self.parts[0].inverse
     }
 
-    /// Whether it treats the components of C as flat punches.
+    /// Whether the preconditioner treats the pieces of C as flat punches.
     pub(super) fn has_punches(&self) -> bool {
         self.has_punches
     }
 
-    /// Treats the components of C as flat punches from now on, for a line in plane strain. With a prescribed approach it does not if a punch may
-    /// displace nothing. Returns whether this is a change.
+    /// On a line in plane strain: treats the pieces of C as flat punches from now on, or no longer if `by_approach` and a uniform pressure displaces
+    /// nothing. Returns whether this is a change.
     pub(super) fn use_punches(&mut self, by_approach: bool) -> bool {
         let serves = |punches: &Punches| !(by_approach && punches.is_mean_free());
         let before = std::mem::replace(&mut self.has_punches, self.punches.as_ref().is_some_and(serves));
         before != self.has_punches
     }
 
-    /// For a line in plane strain: finds the components of a new C.
+    /// On a line in plane strain: finds the pieces of a new C.
     pub(super) fn find_pieces(&mut self, contact: &[bool]) {
         self.punches.iter_mut().filter(|_| self.has_punches).for_each(|punches| punches.find(contact));
     }
 
-    /// For a line in plane strain: sets d to the pressure of a flat punch on the last C, with mean 1 there.
+    /// On a line in plane strain: sets d to the pressure of a flat punch on the last C, with the mean 1 on C.
     pub(super) fn press_flat(&mut self, d: &mut [T]) {
         self.punches.iter_mut().for_each(|punches| punches.press_flat(d));
     }
 
-    /// z = E^T M E z, z being zero outside C. Directions carry no force. A mix maps a uniform residual to a field that is not
-    /// uniform. So the residual's constant (with a prescribed force, the approach) is chosen such that z has mean zero:
-    /// `z = M z - (1, M z)/(1, M 1) M 1`.
+    /// Replaces z by E^T M E z on C; z is zero outside C.
+    ///
+    /// If directions carry no force (`without_force`), the caller subtracts the mean of the result. A sum of several inverses, however, maps a
+    /// uniform residual to a field that is not uniform. Then a constant is subtracted from the residual instead (with a prescribed force, a change of
+    /// the approach), such that the result has the mean zero: `z = M z - (1, M z)/(1, M 1) M 1`.
     pub fn apply(
         &mut self,
         z: &mut Vec<T>,
@@ -130,7 +137,7 @@ impl<T: Real> Preconditioner<T> {
         z.iter_mut().zip(&*unit).for_each(|(z, unit)| *z = *z - amount * *unit);
     }
 
-    /// z = M z, without an extension of residuals beyond C.
+    /// Replaces z by M z, without an extension of residuals beyond C.
     pub fn apply_alone(&mut self, z: &mut [T], workspace: &mut Workspace<T>) {
         let Preconditioner { parts, right, term, .. } = self;
         match &parts[..] {
@@ -139,14 +146,14 @@ impl<T: Real> Preconditioner<T> {
         }
     }
 
-    /// Bytes held.
+    /// Bytes of the inverses, the weights and the memory of a sum.
     pub fn bytes(&self) -> usize {
         let parts: usize = self.parts.iter().map(|part| part.inverse.bytes() + size_of_val(&part.weights[..])).sum();
         parts + 3 * size_of_val(&self.right[..]) + self.punches.as_ref().map_or(0, Punches::bytes)
     }
 }
 
-/// z = M z for a mix. Each term has its own extension.
+/// Replaces z by E^T M E z for a sum of several inverses. Each term has a separate extension.
 fn mix<T: Real>(
     parts: &[Part<T>],
     z: &mut [T],
@@ -167,7 +174,7 @@ fn mix<T: Real>(
     }
 }
 
-/// z = E^T M E z. Without an extension z = M z.
+/// Replaces z by E^T M E z, where `apply` applies M. Without an extension, E is 1.
 fn extended<T: Real>(
     extension: &mut Option<Extension<T, 1>>,
     z: &mut Vec<T>,

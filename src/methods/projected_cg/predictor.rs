@@ -1,9 +1,9 @@
-//! Time stepping: the start from the last two solutions.
+//! Steps in time: a solve starts from an extrapolation of the last two solutions.
 //!
-//! With p_1 the last solution and p_0 the one before it, the start is `p_1 + s_1 p_1 + s_2 d`. The first correction follows a change of
-//! load, the second the motion: d = p_1 - p_0 is the change of the last step. s_1 and s_2 minimise the energy
-//! `(p, A p)/2 + (p, h - approach)` (a projection on earlier solutions, Fischer 1998). They take no product, because all u are known.
-//! With a prescribed force s_1 follows from the force, and d has the sum 0.
+//! Let p_1 be the last solution, p_0 the one before, and d = p_1 - p_0 the change of the last step. The solve starts from `p_1 + s_1 p_1 + s_2 d`.
+//! The first correction follows a change of the load, the second a motion. The factors s_1 and s_2 minimise the energy
+//! `(p, A p)/2 + (p, h - approach)`, which is a projection on earlier solutions (Fischer 1998). They take no product, because A p_1 and A p_0 are
+//! known. If the force is prescribed, s_1 follows from the force, and the second correction has the sum 0.
 
 use std::mem::{swap, take};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,27 +17,27 @@ use crate::scene::Load;
 use crate::sums::Sums;
 use crate::threads::Threads;
 
-/// If d minus its component along p has at most this fraction of the energy of d, it is round-off.
+/// If d minus its component along p has at most this fraction of the energy of d, this rest is round-off.
 const NOISE: f64 = 1e-9;
-/// The name of this memory in messages.
+/// The name of the memory of the earlier solution in messages.
 const LAST: &str = "the solution before";
 
-/// The solution before the last. Empty if there is none.
+/// The solution before the last: its pressures and displacements. Empty if there is none.
 #[derive(Default)]
 pub struct Predictor {
     p: Vec<f64>,
     u: Vec<f64>,
-    /// Whether u belongs to earlier coefficients.
+    /// Whether u belongs to earlier coefficients, so that u only approximates A p.
     is_of_others: bool,
 }
 
 impl Predictor {
-    /// Bytes held.
+    /// Bytes of the solution before the last.
     pub fn bytes(&self) -> usize {
         (self.p.len() + self.u.len()) * size_of::<f64>()
     }
 
-    /// A copy. Fails if memory is short.
+    /// Returns a copy, or an error without memory for it.
     pub fn copy(&self) -> Result<Predictor> {
         Ok(Predictor { p: copied(&self.p, LAST)?, u: copied(&self.u, LAST)?, is_of_others: self.is_of_others })
     }
@@ -52,8 +52,9 @@ impl Predictor {
         Last { p: &self.p, u: Some(&self.u) }
     }
 
-    /// Extrapolates `state` from the last solution, whose u is A p, and keeps the last solution. Returns the freshness of u in the window
-    /// that `window` chooses; elsewhere u is unknown. p may be negative: the iteration truncates it and corrects u.
+    /// Replaces the last solution in `state`, whose u is A p, by the extrapolation, and keeps the last solution. u is extrapolated in the window that
+    /// `window` chooses, and unknown elsewhere. Returns how accurately u equals A p in the window. p may be negative: the iteration truncates p and
+    /// corrects u.
     pub fn predict(
         &mut self,
         state: &mut State,
@@ -63,10 +64,10 @@ impl Predictor {
         let is_of_others = take(&mut self.is_of_others);
         let n = state.p.len();
         if self.p.is_empty() {
-            // The change d is 0.
+            // There is one solution only: d is 0.
             (self.p, self.u) = (copied(&state.p, LAST)?, copied(&state.u, LAST)?);
         }
-        let (now, before) = self.shares(state);
+        let (last_share, share_before) = self.shares(state);
         // The last solution replaces the one before it, which the state's memory now holds.
         swap(&mut self.p, &mut state.p);
         swap(&mut self.u, &mut state.u);
@@ -81,7 +82,7 @@ impl Predictor {
                 let row = y * mx..(y + 1) * mx;
                 let (last, h) = (&last_p[row.clone()], &h[row]);
                 if presses(p) | presses(last) {
-                    p.iter_mut().zip(last).for_each(|(p, last)| *p = now * last - before * *p);
+                    p.iter_mut().zip(last).for_each(|(p, last)| *p = last_share * last - share_before * *p);
                     if touch(p, h, contact) {
                         presses_on_nothing.store(true, Ordering::Relaxed);
                     }
@@ -98,17 +99,17 @@ impl Predictor {
             #[inline(always)]
             |y, u| {
                 let last = &last_u[part.start + y * mx..][x.clone()];
-                u[x.clone()].iter_mut().zip(last).for_each(|(u, last)| *u = now * last - before * *u);
+                u[x.clone()].iter_mut().zip(last).for_each(|(u, last)| *u = last_share * last - share_before * *u);
             },
         );
         Ok(match presses_on_nothing.into_inner() {
             true => Freshness::Stale,
-            false if is_of_others && before != 0.0 => Freshness::Near,
+            false if is_of_others && share_before != 0.0 => Freshness::Near,
             false => Freshness::Exact,
         })
     }
 
-    /// a and b of the start `a p_1 - b p_0`.
+    /// The factors a and b of the extrapolation `a p_1 - b p_0`.
     fn shares(&self, state: &State) -> (f64, f64) {
         let by_force = matches!(state.load, Load::Force(_));
         let [pu, pe, du, dv, de, sum, sum_before] =
@@ -120,7 +121,7 @@ impl Predictor {
         if !(scale.is_finite() && scale > 0.0) {
             scale = 1.0;
         }
-        // d - share p, conjugate to p, or of sum 0 with a prescribed force
+        // The second correction is along d - share p, which is conjugate to p, or has the sum 0 if the force is prescribed.
         let work = share * pe - de;
         let energy = dv - share * (2.0 * du - share * pu);
         let step = work / energy;
@@ -132,7 +133,7 @@ impl Predictor {
     }
 }
 
-/// Takes the elements with p other than 0 as C. Sets p to 0 where there is no surface. Returns whether any p was set.
+/// Sets C to the elements whose p is not 0. Where there is no surface, sets p to 0 and leaves the element outside C; returns whether this happened.
 #[inline(always)]
 fn touch(p: &mut [f64], h: &[f64], contact: &mut [bool]) -> bool {
     let mut none = false;
@@ -148,10 +149,12 @@ fn touch(p: &mut [f64], h: &[f64], contact: &mut [bool]) -> bool {
     none
 }
 
-/// (p, u), (p, e), (d, u), (d, A d), (d, e), and the sums of p_1 and p_0; compiled for the vectors of this machine, on which no bit
-/// depends.
+/// Computes (p, u), (p, e), (d, u), (d, A d), (d, e), and the sums of p_1 and p_0, where p = p_1 and u = A p_1. The loop is compiled for the vector
+/// length of this machine, on which no bit depends.
 struct Products<'a> {
+    /// The last solution, p_1 and u_1.
     state: &'a State,
+    /// The solution before, p_0 and u_0.
     before: (&'a [f64], &'a [f64]),
 }
 
@@ -169,7 +172,7 @@ impl pulp::NullaryFnOnce for Products<'_> {
             if !(presses(p) | presses(p_0)) {
                 continue;
             }
-            // Without branches: h may be infinite where nothing presses.
+            // h may be infinite where p and d are 0: e is then set to 0, without a branch.
             sums.add::<f64, 5, 0>([p, u, h, p_0, u_0], [], |[p, u, h, p_0, u_0], []| {
                 let (d, v) = (p - p_0, u - u_0);
                 let e = if (p != 0.0) | (d != 0.0) { h - approach + u } else { 0.0 };

@@ -1,22 +1,22 @@
-//! Lines in plane strain: the preconditioner's part for the forces of the pieces of C.
+//! Lines in plane strain: the part of the preconditioner that finds the forces on the pieces of C. A piece is a run of neighbours in contact.
 //!
 //! M treats the residual as 0 outside C. For a residual that is uniform over many pieces of C this is a poor approximation: its energy grows with the
-//! number of pieces, and conjugate gradients take about 100 iterations. In plane strain the force of a piece displaces all others, so such residuals
-//! matter. Here M works on residuals without the mean of each piece, and finds pressures without a force on each piece. The forces follow from the
-//! means. With g_i the pressure of a flat punch on piece i, of the force 1:
+//! number of pieces, and conjugate gradients take about 100 iterations. In plane strain the force on a piece displaces all others, so such residuals
+//! matter. Here M gets residuals without the mean of each piece, and finds pressures without a force on each piece. The forces on the pieces follow
+//! from the means. Let g_i be the pressure of a flat punch on piece i with the force 1:
 //!
 //! ```text
 //! Q = 1 - sum over pieces of 1_i g_i^T
 //! M' = Q^T M Q + sum over joints of (g_l - g_r)(g_l - g_r)^T/s + g g^T/(g, A g)
 //! ```
 //!
-//! A joint combines two neighbouring punches l and r to one, `g = a g_l + (1 - a) g_r` with the least energy `(g, A g)`; then g_l - g_r, of the
-//! energy s, is conjugate to g. Pieces within 4 elements are joined, then within 8, and so on; the last joint has all of C. A punch is described by
-//! its centre and its energy. Two punches displace each other like forces at their centres. A piece of n elements displaces itself like a force n/4
-//! elements away (exact for a logarithm; Johnson, Contact Mechanics, section 2.7).
+//! A *joint* combines two neighbouring punches l and r to one punch `g = a g_l + (1 - a) g_r`, where a minimises the energy `(g, A g)`. Then g_l -
+//! g_r, with the energy s, is conjugate to g. Pieces within 4 elements are joined, then within 8, and so on; the last joint is a punch on all of C. A
+//! punch is described by its centre and its energy. Two punches displace each other like forces at their centres. A piece of n elements displaces
+//! itself like a force n/4 elements away (exact for a logarithm; Johnson, Contact Mechanics, section 2.7).
 //!
-//! Measured on rough lines of 9600 elements with two periods, Hurst exponents of 0.3 and 0.8, conjugate gradients on the C of the solution: 24 to
-//! 52 iterations, with M alone 32 to more than 400.
+//! On rough lines of 9600 elements with two periods and Hurst exponents of 0.3 and 0.8, conjugate gradients on the C of the solution take 24 to 52
+//! iterations, and with M alone 32 to more than 400.
 
 use crate::error::Result;
 use crate::grid::Grid;
@@ -24,18 +24,18 @@ use crate::influence::Coefficients;
 use crate::memory::{reserve, zeros};
 use crate::operator::fft::Real;
 
-/// Least elements of a line with punches.
+/// Shorter lines are treated without punches.
 const LEAST_ELEMENTS: usize = 64;
-/// Elements of a piece up to which its energy is computed from g; that of longer ones is read from the kernel.
+/// The energy of a piece of at most this many elements is computed from g; that of a longer piece is read from the kernel.
 const SHORT_PIECE: usize = 8;
-/// The least energy of a joint relative to that of one element. Coefficients of elastic bodies are above it.
+/// A joint has at least this energy, relative to the energy of one element. For elastic bodies the energies of joints are larger.
 const LEAST_ENERGY: f64 = 1e-3;
-/// Factor on the forces, which have the least eigenvalues of M' A. With 1 conjugate gradients take up to 1.25 times as many iterations, with 4 the
-/// same.
+/// The factor on the forces of the pieces, to which the least eigenvalues of M' A belong. With 1 conjugate gradients take up to 1.25 times as many
+/// iterations, with 4 the same number.
 const FORCES_FACTOR: f64 = 2.0;
 const WHAT: &str = "the pieces of a line";
 
-/// The coefficient at an offset along a line.
+/// The influence coefficient at an offset of k elements along a line.
 fn along(coefficients: &Coefficients, grid: &Grid, k: usize) -> f64 {
     if grid.my == 1 {
         coefficients.at(k as i64, 0)
@@ -44,22 +44,23 @@ fn along(coefficients: &Coefficients, grid: &Grid, k: usize) -> f64 {
     }
 }
 
-/// A piece of C, or several joined.
+/// A flat punch with the force 1, on a piece of C or on several joined pieces.
 #[derive(Clone, Copy, Default)]
 struct Punch {
     /// The centre, in elements.
     centre: f64,
+    /// The energy (g, A g).
     energy: f64,
 }
 
-/// The joint of two punches.
+/// The joint of two punches, which are given by their numbers.
 #[derive(Clone, Copy, Default)]
 struct Joint {
     left: u32,
     right: u32,
-    /// a.
+    /// The part a of the left punch.
     part: f64,
-    /// s.
+    /// The energy s of g_l - g_r.
     energy: f64,
 }
 
@@ -71,22 +72,22 @@ pub(super) struct Punches {
     period: Option<f64>,
     /// Whether a uniform pressure displaces nothing.
     is_mean_free: bool,
-    /// First element and end of each piece.
+    /// The first element of each piece, and the element after its last.
     pieces: Vec<(u32, u32)>,
-    /// g of the pieces, per element.
+    /// For each element of C: g of its piece.
     weights: Vec<f64>,
-    /// The punches of the pieces, then of the joints in their order.
+    /// The punches on the pieces, then those of the joints in their order.
     punches: Vec<Punch>,
     joints: Vec<Joint>,
-    /// The mean residual of each punch, then its force.
+    /// For each punch: first its mean residual, later its force.
     values: Vec<f64>,
-    /// Punches not yet joined.
+    /// The numbers of the punches that are not yet joined.
     open: Vec<u32>,
 }
 
 impl Punches {
-    /// Whether a grid is a line in plane strain, with a logarithmic kernel: this falls by the same amount over each doubling of the distance, the
-    /// kernel 1/r of short elements by half as much each time.
+    /// Whether a grid is a line in plane strain, whose kernel is a logarithm of the distance. A logarithm falls by the same amount over each doubling
+    /// of the distance; the kernel 1/r of a line of short elements falls by half as much each time.
     pub(super) fn serve(coefficients: &Coefficients, grid: &Grid) -> bool {
         let n = grid.len();
         let fall = |k: usize| along(coefficients, grid, k) - along(coefficients, grid, 2 * k);
@@ -94,7 +95,7 @@ impl Punches {
         is_line && !coefficients.depends_on_place() && fall(n / 8) > 0.5 * fall(1)
     }
 
-    /// The punches of a line in plane strain, for coefficients times `factor`; none for other grids.
+    /// Sets up the punches of a line in plane strain, for coefficients times `factor`. None for other grids.
     pub(super) fn if_plane_strain(coefficients: &Coefficients, factor: f64, grid: &Grid) -> Result<Option<Punches>> {
         if !Punches::serve(coefficients, grid) {
             return Ok(None);
@@ -156,6 +157,7 @@ impl Punches {
         self.values.resize(self.punches.len(), 0.0);
     }
 
+    /// Finds the runs of neighbours in contact.
     fn find_pieces(&mut self, contact: &[bool]) {
         self.pieces.clear();
         let mut i = 0;
@@ -168,7 +170,7 @@ impl Punches {
         }
     }
 
-    /// Sets g on the elements of a piece: the pressure of a flat punch at their middles, with the sum 1.
+    /// Sets g on the elements of a piece: the pressure of a flat punch at the middle of each element, with the sum 1.
     fn set_weights(&mut self, start: usize, end: usize) {
         let weights = &mut self.weights[start..end];
         let (mut sum, length) = (0.0, (end - start) as f64);
@@ -180,7 +182,7 @@ impl Punches {
         weights.iter_mut().for_each(|weight| *weight /= sum);
     }
 
-    /// (g, A g) of a piece.
+    /// The energy (g, A g) of a piece.
     fn energy(&self, start: usize, end: usize) -> f64 {
         let g = &self.weights[start..end];
         if g.len() > SHORT_PIECE {
@@ -190,7 +192,7 @@ impl Punches {
         g.iter().enumerate().map(|(i, g)| g * displaced(i)).sum()
     }
 
-    /// The coefficient at a distance in elements.
+    /// The influence coefficient at a distance in elements, linearly interpolated.
     fn at(&self, distance: f64) -> f64 {
         let distance = self.period.map_or(distance, |period| distance.min(period - distance));
         let k = (distance as usize).min(self.kernel.len() - 2);
@@ -215,7 +217,7 @@ impl Punches {
         self.open.truncate(kept);
     }
 
-    /// The joint of two punches, with the least energy.
+    /// Joins two punches to the one with the least energy. Returns its number.
     fn join(&mut self, left: u32, right: u32) -> u32 {
         let (l, r) = (self.punches[left as usize], self.punches[right as usize]);
         let mutual = self.at(r.centre - l.centre);
@@ -229,7 +231,7 @@ impl Punches {
         self.punches.len() as u32 - 1
     }
 
-    /// z = Q z: subtracts the means of the pieces.
+    /// Replaces z by Q z: stores the mean of z on each piece, weighted by g, and subtracts it.
     pub(super) fn take_means<T: Real>(&mut self, z: &mut [T]) {
         for (&(start, end), mean) in self.pieces.iter().zip(&mut self.values) {
             let piece = start as usize..end as usize;
@@ -239,7 +241,7 @@ impl Punches {
         }
     }
 
-    /// z = Q^T z, plus the pressures of the forces from the means; `without_force`: the sum of the forces is 0.
+    /// Replaces z by Q^T z, plus the pressures of the forces that follow from the means. `without_force`: the forces have the sum 0.
     pub(super) fn give_forces<T: Real>(&mut self, z: &mut [T], without_force: bool) {
         self.find_forces(without_force);
         for (&(start, end), force) in self.pieces.iter().zip(&self.values) {
@@ -250,7 +252,7 @@ impl Punches {
         }
     }
 
-    /// Finds the forces of the pieces from their means.
+    /// Computes the forces on the pieces from the means of the residual.
     fn find_forces(&mut self, without_force: bool) {
         let Punches { values, joints, punches, pieces, .. } = self;
         for (k, Joint { left, right, part, .. }) in joints.iter().enumerate() {
@@ -263,7 +265,7 @@ impl Punches {
         self.distribute();
     }
 
-    /// Distributes the force of the last joint to the pieces, with the means.
+    /// Distributes the force of the last joint to the pieces; the means shift forces between the two punches of each joint.
     fn distribute(&mut self) {
         let Punches { values, joints, pieces, .. } = self;
         for (k, Joint { left, right, part, energy }) in joints.iter().enumerate().rev() {
@@ -273,7 +275,7 @@ impl Punches {
         }
     }
 
-    /// Sets d, which is 0 outside C, to g of the last joint, of mean 1 on C.
+    /// Sets d to the pressure of a flat punch on all of C, with the mean 1 on C. d is 0 outside C before.
     pub(super) fn press_flat<T: Real>(&mut self, d: &mut [T]) {
         self.values.fill(0.0);
         if let Some(value) = self.values.last_mut() {
@@ -286,7 +288,7 @@ impl Punches {
         }
     }
 
-    /// Bytes held.
+    /// Bytes of the kernel, the weights and the lists.
     pub(super) fn bytes(&self) -> usize {
         let lists = size_of::<(u32, u32)>() + size_of::<u32>() + size_of::<Joint>() + 2 * size_of::<Punch>() + 16;
         self.kernel.len() * 16 + self.pieces.capacity() * lists

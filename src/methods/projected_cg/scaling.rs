@@ -1,29 +1,29 @@
-//! Scaling for single precision, whose range is 1e-38 to 1e38: a scene in nanometres, or of a huge modulus, would leave it. Factors are
-//! powers of two, so that they change no digit.
+//! Units for single precision, whose range is 1e-38 to 1e38. The numbers of a scene in nanometres, or with a huge modulus, would leave this range, so
+//! the iteration multiplies them by factors. The factors are powers of two, so that they change no digit.
 
 use crate::blocks::{self, LANES};
 use crate::contact::State;
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// Largest exponent of two of numbers that are not scaled. With sums over 2^24 elements, a tolerance of 2^-40 and the inverse of A, results stay
-/// within 2^-126 to 2^127.
+/// Numbers between 2^-48 and 2^48 are not scaled. With sums over 2^24 elements, a tolerance of 2^-40 and the inverse of A, all results then stay
+/// between 2^-126 and 2^127.
 const LARGEST_EXPONENT: i32 = 48;
 
-/// Factors from the scene's units to the iteration's.
+/// The factors that convert the scene's units to those of the iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaling {
-    /// The factor of influence coefficients.
+    /// The factor on influence coefficients.
     pub influence: f64,
-    /// The factor of lengths.
+    /// The factor on lengths: h, u and the approach.
     pub length: f64,
 }
 
 impl Scaling {
-    /// The scene's units.
+    /// The iteration has the scene's units.
     pub const SAME: Scaling = Scaling { influence: 1.0, length: 1.0 };
 
-    /// The scaling for a state with the `self_influence` of an element.
+    /// Chooses the factors for a state. `self_influence` is the influence of an element on itself.
     pub fn for_state(state: &State, self_influence: f64, threads: &Threads) -> Scaling {
         let alone = match state.load {
             Load::Approach(_) => 0.0,
@@ -35,7 +35,7 @@ impl Scaling {
         Scaling { influence: towards_one(self_influence), length: if suits { 1.0 } else { to_one(length) } }
     }
 
-    /// The factor of pressures: u = A p holds in both units.
+    /// The factor on pressures, with which u = A p holds in both units.
     pub fn pressure(&self) -> f64 {
         self.length / self.influence
     }
@@ -61,7 +61,7 @@ impl Scaling {
     }
 }
 
-/// The largest |h - approach| of elements in contact or below the approach, by blocks of rows.
+/// The largest |h - approach| of all elements that are in contact or have h below the approach.
 fn farthest(state: &State, threads: &Threads) -> f64 {
     blocks::fold(
         &state.grid,
@@ -73,7 +73,7 @@ fn farthest(state: &State, threads: &Threads) -> f64 {
     )
 }
 
-/// The largest |h - approach| of a block, in lanes that the compiler vectorises.
+/// The same for a block of elements, in lanes, so that the compiler vectorises the loop.
 #[inline(always)]
 fn farthest_of(h: &[f64], contact: &[bool], approach: f64) -> f64 {
     let distance = |h: f64, inside: bool| if inside | (h < approach) { (h - approach).abs() } else { 0.0 };
@@ -89,6 +89,7 @@ fn farthest_of(h: &[f64], contact: &[bool], approach: f64) -> f64 {
     farthest.into_iter().fold(of_rest, |farthest, value| larger(value, farthest))
 }
 
+/// The larger of two numbers, in a form that the compiler vectorises. If a is NaN, the result is b.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if a > b {
@@ -103,7 +104,7 @@ fn exponent(value: f64) -> i32 {
     (value.to_bits() >> 52 & 0x7ff) as i32 - 1023
 }
 
-/// 1 for a value within [`LARGEST_EXPONENT`], else the power of two that brings it to [1, 2).
+/// 1 if the exponent of a value is within [`LARGEST_EXPONENT`], otherwise the power of two that brings the value to [1, 2).
 fn towards_one(value: f64) -> f64 {
     if exponent(value).abs() <= LARGEST_EXPONENT {
         1.0
@@ -112,7 +113,7 @@ fn towards_one(value: f64) -> f64 {
     }
 }
 
-/// The power of two that brings a value to [1, 2); 1 where there is none.
+/// The power of two that brings a value to [1, 2); 1 if the value is not positive and normal, or that power is not normal.
 fn to_one(value: f64) -> f64 {
     // The inverse of 2^1022 and beyond is not normal.
     if value.is_normal() && value > 0.0 && exponent(value) < 1022 {

@@ -1,32 +1,34 @@
-//! The state between two iterations: the forecast of the step length, and the slope of the last direction.
+//! What one iteration leaves for the next: the forecast of the step length, and (t, q) of the last direction.
 
-/// The forecast of the first alpha: the first step of fixed length leaves smooth errors, with eigenvalues near 1.
+/// The forecast of the first alpha. The first step of fixed length leaves smooth errors, whose eigenvalues of M A are near 1.
 pub(super) const FIRST_FORECAST: f64 = 0.9;
-/// The usual range of later forecasts, each of which is the last alpha.
+/// The usual range of forecasts. Each forecast is the last alpha, clamped to this range if alpha is near the range.
 const FORECASTS: (f64, f64) = (0.3, 1.0);
-/// Factor between forecast and alpha beyond which the forecast failed.
+/// A forecast has failed if it and alpha differ by more than this factor.
 const FAR_OFF: f64 = 3.0;
 
-/// Step lengths and slopes passed from one iteration to the next.
+/// What one iteration leaves for the next.
 pub(super) struct Search {
-    /// alpha', if there is one.
+    /// The forecast alpha' of the step length, if there is one.
     pub(super) forecast: Option<f64>,
-    /// Whether steps may be clipped. Clipped directions may fail to descend; then the next one is neither clipped nor conjugate to this one.
+    /// Whether steps may be clipped. A clipped direction may fail to descend; then the next direction is neither clipped nor conjugate to it.
     pub(super) may_clip: bool,
-    /// (t, q); 0 if the next direction is conjugate to none.
+    /// (t, q) of the last direction; 0 if the next direction is not to be conjugate to it.
     pub(super) tq: f64,
+    /// Whether the next iteration is the first.
     pub(super) is_first: bool,
-    /// Products not yet counted.
+    /// Products before the first iteration, which are not yet counted.
     pub(super) products: u64,
 }
 
 impl Search {
-    /// The state before the first iteration.
+    /// The values before the first iteration.
     pub(super) fn new(forecast: Option<f64>) -> Search {
         Search { forecast, may_clip: true, tq: 0.0, is_first: true, products: 0 }
     }
 
-    /// The forecast, if alpha is within the factor [`FAR_OFF`] of it. If not, the next direction is neither clipped nor conjugate to this one.
+    /// Returns the forecast if steps are clipped and alpha is within the factor [`FAR_OFF`] of the forecast. Otherwise None; if steps were clipped,
+    /// the next direction is then neither clipped nor conjugate to this one.
     pub(super) fn believed(&mut self, alpha: f64) -> Option<f64> {
         let good = self.forecast.filter(|forecast| self.may_clip && within_factor(alpha, *forecast, FAR_OFF));
         self.may_clip = !self.may_clip || good.is_some();
@@ -36,7 +38,8 @@ impl Search {
         good
     }
 
-    /// Makes this alpha the next forecast, clamped to the usual range if it is near that.
+    /// Makes alpha the next forecast. With a preconditioner alpha is clamped to the usual range if it is near this range. Without a positive alpha
+    /// there is no forecast.
     pub(super) fn expect(&mut self, alpha: f64, preconditioned: bool) {
         let usual = alpha.clamp(FORECASTS.0, FORECASTS.1);
         let near = preconditioned && within_factor(alpha, usual, FAR_OFF);
@@ -44,6 +47,7 @@ impl Search {
     }
 }
 
+/// Whether two positive values differ by less than a factor.
 fn within_factor(value: f64, other: f64, factor: f64) -> bool {
     value * factor > other && value < factor * other
 }

@@ -1,11 +1,11 @@
-//! Truncation without a product of its own. After step (4.1) u lacks `A d`, where d is the change of p by truncation. An extra product
-//! would correct u, but it costs half an iteration. Two measures avoid it:
+//! Truncation of pressures without an extra product. Step (4.1) changes p by d on the elements that leave C, and then u lacks `A d`. An extra product
+//! would correct u, but it costs half an iteration. Two measures avoid the extra product:
 //!
-//! - All eigenvalues of M A on C are at least 1 and few exceed 4, so alpha can be forecast to within some ten percent. Elements that the
-//!   forecast step would truncate are clipped before the product. Then d is only the error of the forecast.
-//! - If d is small compared with the step, the correction of u is deferred. The next direction is `t + d/alpha'`, so that its product contains
-//!   `A d`. If alpha differs from alpha', the rest `d (1 - alpha/alpha')` remains to be corrected. It shrinks by this factor at each iteration.
-//!   At the end the fresh product of the certificate corrects the remainder.
+//! - All eigenvalues of M A on C are at least 1 and few exceed 4, so alpha can be forecast to within some ten percent. Elements that the forecast
+//!   step would truncate are clipped before the product. Then d is only due to the error of the forecast alpha'.
+//! - If d is small compared with the step, the correction of u is deferred. The next direction is `t + d/alpha'`, so that its product contains `A d`.
+//!   If alpha differs from alpha', the rest `d (1 - alpha/alpha')` remains to be corrected, and the rest shrinks by this factor at each iteration. At
+//!   the end the fresh product of the certificate corrects what remains.
 
 use super::step_sums::StepSums;
 use crate::contact::State;
@@ -13,9 +13,10 @@ use crate::error::Result;
 use crate::memory::{keep, reserve};
 use crate::operator::fft::Real;
 
-/// The truncated elements with their d. u still lacks `A d`.
+/// The deferred corrections: the changes d of p by truncation for which u still lacks `A d`.
 #[derive(Default)]
 pub(super) struct Truncation {
+    /// Elements, and the change d of p on each.
     gains: Vec<(usize, f64)>,
 }
 
@@ -25,7 +26,7 @@ impl Truncation {
         Ok(reserve(&mut self.gains, n, "truncated elements")?)
     }
 
-    /// Removes all: u needs no correction.
+    /// Removes all entries: u needs no correction.
     pub(super) fn clear(&mut self) {
         self.gains.clear();
     }
@@ -35,12 +36,12 @@ impl Truncation {
         self.gains.push((i, d));
     }
 
-    /// The number of entries. Later entries follow them.
+    /// The number of entries. Entries that are added later come after these.
     pub(super) fn count(&self) -> usize {
         self.gains.len()
     }
 
-    /// The entries: elements with their d.
+    /// The entries: elements, and the change d of p on each.
     pub(super) fn gains(&self) -> &[(usize, f64)] {
         &self.gains
     }
@@ -50,12 +51,12 @@ impl Truncation {
         self.gains.iter().map(|gain| gain.1.abs()).sum()
     }
 
-    /// d times a factor.
+    /// Multiplies all d by a factor.
     pub(super) fn scale(&mut self, factor: f64) {
         self.gains.iter_mut().for_each(|gain| gain.1 *= factor);
     }
 
-    /// Adds entries, and merges those of one element.
+    /// Adds entries, and merges entries of the same element.
     pub(super) fn extend(&mut self, gains: impl Iterator<Item = (usize, f64)>) {
         self.gains.extend(gains);
         self.gains.sort_unstable_by_key(|gain| gain.0);
@@ -68,19 +69,20 @@ impl Truncation {
         });
     }
 
-    /// Keeps the memory for later solves.
+    /// Gives the memory to later solves, when this list is no longer used.
     pub(super) fn keep(&mut self) {
         keep([&mut self.gains]);
     }
 
-    /// The direction t contains the deferred correction: t + d/alpha'.
+    /// Adds the deferred corrections to the direction, before its product: t + d/alpha'. `forecast` is alpha'.
     pub(super) fn include<T: Real>(&self, t: &mut [T], forecast: f64) {
         for &(i, d) in &self.gains {
             t[i] += T::of(d / forecast);
         }
     }
 
-    /// After the product q = A t: removes the correction from t, and reduces the entries to the rest that alpha leaves.
+    /// After the product q = A t: removes the deferred corrections from t and from the sums of the step, and reduces each entry to the rest that a
+    /// step of the length alpha leaves.
     pub(super) fn exclude<T: Real>(
         &mut self,
         (t, q): (&mut [T], &[T]),
@@ -100,7 +102,7 @@ impl Truncation {
         self.gains.retain(|gain| gain.1 != 0.0);
     }
 
-    /// Moves the entries to z = d.
+    /// Moves all entries to an array: sets z = d on their elements, 0 elsewhere.
     pub(super) fn take<T: Real>(&mut self, z: &mut [T]) {
         z.fill(T::zero());
         for (i, d) in self.gains.drain(..) {

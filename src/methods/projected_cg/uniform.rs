@@ -1,12 +1,12 @@
-//! By approach: a direction that changes the mean of p if scaling cannot.
+//! With a prescribed approach: a deflation direction that changes the mean of p where scaling cannot.
 //!
-//! Directions carry no force, and p is scaled to the least energy (module `energy`). That fails in two kinds of scenes:
+//! Search directions carry no force, and p is scaled to the least energy (module `energy`). Scaling fails in two kinds of scenes:
 //!
-//! - One element carries much of the force: a grain of dust, the spike of an interferometer. Scaling then fits the depth of that element, of
-//!   which a hundredth exceeds the roughness of all others.
-//! - Two periods, near full contact: the mean of p displaces nothing, so the least energy does not determine it.
+//! - One element carries much of the force, like a grain of dust or a spike in data of an interferometer. Scaling then fits the depth of that
+//!   element, and a hundredth of this depth exceeds the roughness of all other elements.
+//! - The scene has two periods and is near full contact. The mean of p displaces nothing, so the least energy does not determine the mean.
 //!
-//! In these, p moves in each step along d, as along a change of the last step (module `deflation`), and is not scaled:
+//! In these scenes p is not scaled. In each step p moves along d, as along a change of the last step (module `deflation`):
 //!
 //! ```text
 //! d = 1 on C;   w = A d: one product
@@ -14,11 +14,11 @@
 //!
 //! On a line in plane strain d is the pressure of a flat punch instead (module `flat_punch`), for any surface.
 //!
-//! d is set up again when a quarter of C has left it. This saves time, because elements that left need corrections in each step. C may be found late,
-//! as around a spike that dominates coarse grids. Then d is set up when C is found.
+//! d is set up again when a quarter of its elements has left C. This saves time, because the elements that left need corrections in each step. C may
+//! be found late, for instance around a spike that dominates coarse grids. Then d is set up when C has changed much.
 //!
-//! Measured: 180 planes of 80 x 80 with one spike, many, or plateaus take 5 to 31 iterations by approach (median 15), 5 to 29 by force (median
-//! 14). Without d most of those with spikes take more than 60.
+//! 180 planes of 80 x 80 elements with one spike, many spikes, or plateaus take 5 to 31 iterations by approach (median 15), and 5 to 29 by force
+//! (median 14). Without d most of the planes with spikes take more than 60 by approach.
 
 use super::iteration::Cycle;
 use super::vectors::Iteration;
@@ -27,15 +27,16 @@ use crate::operator::fft::Real;
 use crate::scene::Load;
 use crate::sums::{in_blocks, Sums};
 
-/// Ratio to the mean above which pressures are those of few elements.
+/// A pressure above this many mean pressures is concentrated.
 const CONCENTRATED_RATIO: f64 = 8.0;
-/// Part of the force beyond this ratio from which few elements carry much.
+/// Few elements carry much of the force if the excess of concentrated pressures carries more than this part of the force.
 const CONCENTRATED_FORCE: f64 = 0.01;
-/// d is set up again when more than 1/CHANGED_DIVISOR of the elements of C have changed.
+/// d is set up, or set up again, when more than 1/CHANGED_DIVISOR of the elements of C have changed.
 const CHANGED_DIVISOR: u64 = 4;
 
 impl<T: Real> Iteration<T> {
-    /// Sets up the deflation direction, if the load needs one, no change is known and there is memory. Returns the products that this takes.
+    /// Sets up the deflation direction d = 1 on C, or a flat punch's pressure, if the scene needs d, no change of the last step serves as d, and
+    /// there is memory. Returns the number of products that this takes.
     pub(super) fn deflate<S: AdmissibleSet>(&mut self, state: &State, is_mean_free: bool) -> u64 {
         let by_approach = matches!(state.load, Load::Approach(_));
         let is_known = self.deflation.is_there() && !self.deflation.is_uniform;
@@ -43,7 +44,7 @@ impl<T: Real> Iteration<T> {
             return 0;
         }
         let is_nearly_full = is_mean_free && 2 * self.segments.count() > state.p.len();
-        // With a layer that differs between elements, few carry much for another reason, and 1 is no useful direction.
+        // If a layer's compliance differs between elements, few elements carry much of the force for another reason, and d = 1 is of no use.
         let is_of_few =
             !is_nearly_full && !self.operator.has_diagonal() && few_carry_much(state, self.segments.count());
         let is_plane_strain = self.is_plane_strain();
@@ -63,7 +64,8 @@ impl<T: Real> Iteration<T> {
         1
     }
 
-    /// Whether C has changed so much that d must be set up, again or for the first time.
+    /// Whether C has changed so much that [`deflate`](Iteration::deflate) is called again. Without a direction, C is examined after 1, 2, 4, 8, ...
+    /// iterations.
     pub(super) fn is_another_area(&self, cycle: &Cycle, iterations: u64) -> bool {
         let count = self.segments.count() as u64;
         if self.deflation.is_there() {

@@ -1,11 +1,13 @@
-//! Bounds: free elements, elements that stay at a bound, and pressures at a bound up to round-off.
+//! Which elements are free, which stay at a bound, and which pressures equal a bound up to round-off.
 
 use crate::contact::{AdmissibleSet, State};
 use crate::scene::Load;
 use crate::sums::{in_blocks, ROUND_OFF};
 
-/// e on elements with a surface, and the free elements. With a prescribed force and C empty the approach is midway between the one that
-/// holds all elements at their limit and the one at which an exterior element touches. If these are in the wrong order, both kinds are free.
+/// Computes e on elements with a surface, and marks the free elements.
+///
+/// If the force is prescribed and C is empty, h + u does not determine the approach. Then the approach is midway between the one that keeps all
+/// elements at their limit, and the one at which an exterior element touches. If the first exceeds the second, elements of both kinds are free.
 pub(super) fn find_free<S: AdmissibleSet>(state: &State, set: S, distance: &mut [f64], free: &mut [bool]) {
     let approach = match state.load {
         Load::Force(_) if !state.contact.contains(&true) => between(state),
@@ -19,7 +21,7 @@ pub(super) fn find_free<S: AdmissibleSet>(state: &State, set: S, distance: &mut 
     }
 }
 
-/// Removes from the free elements those at a bound that t would violate; with `all`, each one at a bound. Returns whether there are any.
+/// Removes from the free elements those at a bound which t would violate, or with `all` each element at a bound. Returns whether there are any.
 pub(super) fn keep_at_bounds<S: AdmissibleSet>(
     (state, set): (&State, S),
     t: &[f64],
@@ -36,15 +38,15 @@ pub(super) fn keep_at_bounds<S: AdmissibleSet>(
     any
 }
 
-/// With limits: sets pressures to a bound that they equal up to the round-off of the force. If nearly all elements are at a bound, an element whose
-/// pressure is this round-off must not determine the approach.
+/// With pressure limits: sets pressures to a bound that they equal up to the round-off of the force. If nearly all elements are at a bound, an
+/// element whose pressure is such a round-off must not determine the approach.
 pub(super) fn snap<S: AdmissibleSet>(state: &mut State, set: S) {
     if !S::LIMITED {
         return;
     }
     let least = ROUND_OFF * in_blocks(state.p.iter().copied()) / state.p.len() as f64;
     for (i, p) in state.p.iter_mut().enumerate() {
-        // Limits may be as small as round-off.
+        // A limit may be as small as `least`, so the limit is tested first.
         if *p >= (1.0 - ROUND_OFF) * set.limit(i) {
             *p = set.limit(i);
         } else if *p <= least {
@@ -53,7 +55,7 @@ pub(super) fn snap<S: AdmissibleSet>(state: &mut State, set: S) {
     }
 }
 
-/// C = {0 < p < limit}. Returns the number of elements that changed sides.
+/// Sets C = {0 < p < limit}. Returns the number of elements that entered or left C.
 pub(super) fn find_contact<S: AdmissibleSet>(state: &mut State, set: S) -> u64 {
     let mut changes = 0;
     for i in 0..state.p.len() {
@@ -69,7 +71,7 @@ pub(super) fn find_contact<S: AdmissibleSet>(state: &mut State, set: S) -> u64 {
     changes
 }
 
-/// The middle between the approach that holds all elements at their limit and the one at which an exterior element touches.
+/// The middle between the approach that keeps all elements at their limit and the one at which an exterior element touches.
 fn between(state: &State) -> f64 {
     let (mut held, mut touching) = (f64::NEG_INFINITY, f64::INFINITY);
     for i in (0..state.p.len()).filter(|&i| state.h[i].is_finite()) {

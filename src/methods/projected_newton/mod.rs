@@ -4,16 +4,16 @@
 //!
 //! ```text
 //! free elements: p > 0 or e < 0; with limits also p < p_max or e > 0
-//! A t = -e on them, in part: some conjugate gradients             (module `direction`)
-//! elements whose t leads out of their bound are not free: t anew   (module `bounds`)
-//! d = project(p + t) - p                                          (module `projection`)
+//! solve A t = -e on the free elements approximately, by a few conjugate gradients             (module `direction`)
+//! if t takes an element at a bound beyond it, the element is not free; compute t again        (module `bounds`)
+//! d = project(p + t) - p                                                                      (module `projection`)
 //! s = -(d, e)/(d, A d), at most 1;   p = p + s d
 //! ```
 //!
-//! With a prescribed force, t has mean zero on the free elements, and the projection adds a constant there so that p carries the force.
+//! If the force is prescribed, t has mean zero on the free elements, and the projection adds a constant there so that p carries the force.
 //!
-//! If bounds cut off much of t, s is small. Then d is projected again from a shorter t, and the next direction has fewer conjugate gradients:
-//! long waves of t would push many elements to a bound at which they do not stay.
+//! If bounds cut off much of t, s is small. Then d is computed again from a shorter t, and the next direction takes fewer conjugate gradients: long
+//! waves of t would move many elements to a bound at which they do not stay.
 
 mod bounds;
 mod direction;
@@ -28,46 +28,56 @@ use crate::methods::{Change, Policy, Step, Task};
 use crate::operator::Workspace;
 use crate::sums::in_blocks;
 
+/// The name of the memory in messages.
 const MEMORY: &str = "the workspace of the projected Newton method";
 
-/// Most conjugate gradients of one direction.
+/// The largest number of conjugate gradients for one t.
 const MOST_GRADIENTS: u32 = 16;
-/// Steps below this part of d are short. If the best part is at least 1/2, all of d lowers the energy as well (a parabola).
+/// A step is short if s is below this value. If s is at least 1/2, all of d lowers the energy as well, because the energy along d is a parabola.
 const SHORT_STEP: f64 = 0.5;
-/// Directions recomputed without the elements that t would move beyond a bound; after these all elements at a bound stay there.
+/// t is computed at most this many times more, without the elements that it would take beyond a bound. After that all elements at a bound stay there.
 const MOST_RECOMPUTED: u32 = 3;
-/// Steps lower the energy, but not always the violation: with limits that differ a thousandfold it may stagnate for over a hundred steps.
+/// Steps lower the energy, but not always the violation: with limits that differ a thousandfold the violation may stagnate for over a hundred steps.
 const PATIENCE: u32 = 400;
-/// Factor on t if p + t leads uphill.
+/// The factor by which t is shortened if d leads uphill.
 const STEP_RATIO: f64 = 0.25;
-/// Shortest t, relative to the first: if it leads uphill, t is round-off.
+/// The shortest t, relative to the first. If this t leads uphill, t is round-off.
 const ROUND_OFF: f64 = 1e-9;
 
-/// The method, and its memory, kept from one solve to the next. A must be symmetric.
+/// The projected Newton method, and its memory, which the next solve reuses. A must be symmetric.
 #[derive(Default)]
 pub struct ProjectedNewton {
-    /// None: the circulant is not positive, and W, the inverse of A's diagonal, replaces it.
+    /// The preconditioner M. None if the circulant is not positive definite: then `weight` replaces M.
     preconditioner: Option<(Workspace<f64>, Preconditioner<f64>)>,
+    /// The inverse of A's diagonal.
     weight: Vec<f64>,
+    /// Whether each element is free.
     free: Vec<bool>,
-    /// e on elements with a surface.
+    /// e on elements with a surface, 0 elsewhere.
     distance: Vec<f64>,
+    /// The Newton direction.
     t: Vec<f64>,
-    /// Conjugate gradients: the residual, preconditioned residual, direction, its product, and the product of 1 on the free elements.
+    /// Conjugate gradients: the residual r.
     r: Vec<f64>,
+    /// Conjugate gradients: the preconditioned residual z = M r.
     z: Vec<f64>,
+    /// Conjugate gradients: the direction. In the projection: p + d.
     along: Vec<f64>,
+    /// The product of A with the direction of conjugate gradients.
     along_product: Vec<f64>,
+    /// The product of A with 1 on the free elements.
     uniform_product: Vec<f64>,
-    /// d and A d.
+    /// The change d of p.
     change: Vec<f64>,
+    /// The product A d.
     change_product: Vec<f64>,
-    /// Most conjugate gradients of the next direction.
-    most: u32,
+    /// The largest number of conjugate gradients for the next t.
+    most_gradients: u32,
+    /// Whether this solve has made a step.
     began: bool,
 }
 
-/// A step from p to p + part d, and its change of energy.
+/// A step from p to p + part d, and the change of energy by the step.
 #[derive(Clone, Copy, Debug)]
 struct Length {
     part: f64,
@@ -91,7 +101,7 @@ impl<S: AdmissibleSet> Step<S> for ProjectedNewton {
             }
             self.free = zeros(n, MEMORY)?;
         }
-        (self.most, self.began) = (MOST_GRADIENTS, false);
+        (self.most_gradients, self.began) = (MOST_GRADIENTS, false);
         Ok(())
     }
 
@@ -100,13 +110,13 @@ impl<S: AdmissibleSet> Step<S> for ProjectedNewton {
             self.set_up(task.problem)?;
             take_over(task)?;
         }
-        // The loop admits elements with p = 0: they are free, but must not determine the approach.
+        // The loop has admitted elements with p = 0 to C. They are free, but must not determine the approach.
         find_contact(task.state, task.set);
         task.state.fit_approach(&task.problem.threads);
         find_free(task.state, task.set, &mut self.distance, &mut self.free);
         let slope = self.downhill(task)?;
         if !(slope < 0.0) {
-            // No direction is downhill, up to round-off: the loop's certificate decides.
+            // Up to round-off no direction leads downhill. The loop's certificate decides.
             task.problem.refresh(task.state, task.set)?;
             let update = if slope == 0.0 { 0.0 } else { f64::INFINITY };
             return Ok(Change { update, gives_up: true, ..Change::default() });
@@ -123,19 +133,20 @@ impl<S: AdmissibleSet> Step<S> for ProjectedNewton {
 }
 
 impl ProjectedNewton {
-    /// Bytes held.
+    /// Bytes of the vectors and of the preconditioner.
     pub fn bytes(&self) -> usize {
         let preconditioner = self.preconditioner.as_ref().map_or(0, |(workspace, m)| m.bytes() + workspace.bytes());
         preconditioner + 10 * self.t.len() * size_of::<f64>() + self.free.len()
     }
 
+    /// All vectors of doubles.
     fn vectors(&mut self) -> [&mut Vec<f64>; 10] {
         let ProjectedNewton { weight, distance, t, r, z, along, along_product, .. } = self;
         let ProjectedNewton { uniform_product, change, change_product, .. } = self;
         [weight, distance, t, r, z, along, along_product, uniform_product, change, change_product]
     }
 
-    /// Makes the preconditioner and W.
+    /// Sets up the preconditioner, and the inverse of A's diagonal.
     fn set_up(&mut self, problem: &Problem) -> Result<()> {
         let Problem { coefficients, grid, threads, .. } = problem;
         self.preconditioner = match Preconditioner::new(coefficients, 1.0, grid, threads)? {
@@ -148,7 +159,7 @@ impl ProjectedNewton {
         Ok(())
     }
 
-    /// Finds t and d that lead downhill. Returns the slope of d, which is not negative if there are none.
+    /// Computes t and d so that d leads downhill. Returns the slope (d, e), which is not negative if no such d is found.
     fn downhill<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<f64> {
         let mut tries = 0;
         let mut slope = loop {
@@ -169,7 +180,7 @@ impl ProjectedNewton {
         Ok(slope)
     }
 
-    /// The step along d, or along a d from a shorter t if that lowers the energy more.
+    /// Chooses the step along d, or along the d of a shorter t if this lowers the energy more.
     fn search<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>, slope: f64) -> Result<Length> {
         task.problem.displace(&self.change, &mut self.change_product)?;
         let first = self.length(slope);
@@ -187,20 +198,23 @@ impl ProjectedNewton {
                 found = first;
             }
         }
-        self.most = if first.part < SHORT_STEP { (self.most / 2).max(1) } else { (2 * self.most).min(MOST_GRADIENTS) };
-        // All of d lowers the energy as well, and moves elements to their bounds.
+        self.most_gradients = match first.part < SHORT_STEP {
+            true => (self.most_gradients / 2).max(1),
+            false => (2 * self.most_gradients).min(MOST_GRADIENTS),
+        };
+        // Unless the step is short, all of d lowers the energy as well, and takes elements to their bounds.
         let part = if found.part >= SHORT_STEP { 1.0 } else { found.part };
         Ok(Length { part, ..found })
     }
 
-    /// The part of d that lowers the energy most, from the product of d.
+    /// The part of d, at most 1, that lowers the energy most.
     fn length(&self, slope: f64) -> Length {
         let curvature = dot(&self.change, &self.change_product);
         let part = if curvature > 0.0 { (-slope / curvature).min(1.0) } else { 1.0 };
         Length { part, energy: part * (slope + 0.5 * part * curvature) }
     }
 
-    /// p = p + part d, u likewise, and C = {0 < p < limit}. Returns the number of elements that changed sides.
+    /// Sets p = p + part d, u = u + part A d, and C = {0 < p < limit}. Returns the number of elements that entered or left C.
     fn take<S: AdmissibleSet>(&mut self, state: &mut State, set: S, part: f64) -> u64 {
         for i in 0..state.p.len() {
             // p + (project(p + t) - p) may miss a bound by round-off.
@@ -213,7 +227,7 @@ impl ProjectedNewton {
     }
 }
 
-/// Makes pressures admissible and carry a prescribed force, C from them, and u = A p.
+/// Makes p admissible and lets it carry a prescribed force. Sets C = {0 < p < limit} and u = A p.
 fn take_over<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     let (state, set) = (&mut *task.state, task.set);
     let project = |(i, p): (usize, &mut f64)| *p = if p.is_finite() { set.project(i, *p) } else { 0.0 };
@@ -223,6 +237,7 @@ fn take_over<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     task.problem.refresh(task.state, task.set)
 }
 
+/// The inner product (a, b).
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     in_blocks(a.iter().zip(b).map(|(a, b)| a * b))
 }

@@ -1,4 +1,4 @@
-//! The FFT smoother: the inverse of a circulant near A, with a step length.
+//! The FFT smoother: a step along the residual times the inverse of a circulant near A, with a computed step length.
 //!
 //! ```text
 //! z = M r on C, 0 outside             M: the inverse of a circulant near A
@@ -7,31 +7,27 @@
 //! r = r - omega alpha q
 //! ```
 //!
-//! *Why a step length.* All eigenvalues of M A on a part C of the grid are at least 1, and the largest grows like the
-//! logarithm of the number of elements (about 3 at 64 x 64, 4.6 at 512 x 512), as a circulant ignores the boundary of
-//! C. The large eigenvalues belong to waves that the coarse grid resolves as well. So a fixed alpha = 1 amplifies
-//! errors just removed by the coarse grid, and a fixed alpha small enough for all waves hardly smooths. The alpha
-//! above minimises the elastic energy along z,
+//! *Why a step length.* All eigenvalues of M A on a part C of the grid are at least 1. The largest eigenvalue grows like the logarithm of the number
+//! of elements (about 3 at 64 x 64, 4.6 at 512 x 512), because a circulant ignores the boundary of C. The large eigenvalues belong to waves that the
+//! coarse grid resolves as well. So a fixed alpha = 1 amplifies errors that the coarse grid has just removed, and a fixed alpha small enough for all
+//! waves hardly smooths. With omega = 1 the alpha above minimises the elastic energy J along z:
 //!
 //! ```text
 //! J(v) = (v, A v)/2 - (d, v) on C,    J(v + omega alpha z) - J(v) = -omega (2 - omega) (r, z)^2 / (2 (z, q)) <= 0
 //! ```
 //!
-//! *Why the coarse-grid correction has a step length as well.* Coarse coefficients are computed anew, not by the
-//! Galerkin product, and the coarse contact area differs from the fine one: nothing bounds the energy of the
-//! correction. As one more direction z it cannot raise J. So no part of a cycle raises J for any C, and each sweep
-//! lowers it at least as much as one step of preconditioned steepest descent: the cycles converge for every symmetric
-//! positive definite A.
+//! *Why the coarse-grid correction has a step length as well.* Coarse coefficients are computed anew, not by the Galerkin product, and the coarse
+//! contact area differs from the fine one. So nothing bounds the energy of the correction. If the correction is one more direction z, it cannot
+//! increase J. Then no part of a cycle increases J, whatever C is, and each sweep lowers J at least as much as one step of preconditioned steepest
+//! descent. Therefore the cycles converge for every symmetric positive definite A.
 //!
-//! *Cost.* q updates the residual, so the step length costs no product. `A v`, the sum of all steps, is known at the
-//! end of the cycle and saves the next product. M has the period of the grid and costs a quarter of a product.
+//! *Cost.* q updates the residual, so the step length costs no product. The sum of all steps, `A v`, is known at the end of the cycle and saves the
+//! next product. M has nearly the period of the grid and costs a quarter of a product.
 //!
-//! *Nonlinearity.* alpha depends on r, so the cycle is not linear in the defect, but homogeneous: `cycle(c d) = c
-//! cycle(d)`.
+//! *Nonlinearity.* alpha depends on r, so the cycle is not linear in the defect d. But it is homogeneous: `cycle(c d) = c cycle(d)`.
 //!
-//! Where A is not symmetric there is no energy, and alpha = (r, q)/(q, q) minimises the norm of the residual instead
-//! (also where an A that is not positive definite makes (z, q) <= 0). Where the circulant is not positive, M = 1:
-//! steepest descent.
+//! *Other matrices.* If A is not symmetric, there is no energy. Then alpha = (r, q)/(q, q) minimises the norm of the residual, as it does if an A
+//! that is not positive definite makes (z, q) <= 0. If the circulant is not positive definite, M = 1, and the smoother is steepest descent.
 
 use crate::error::Result;
 use crate::grid::Grid;
@@ -41,13 +37,15 @@ use crate::threads::Threads;
 
 /// The FFT smoother on one grid.
 pub struct Fft {
+    /// M, and the memory of its products. None: M = 1.
     inverse_circulant: Option<(Operator<f64>, Workspace<f64>)>,
+    /// Whether A is symmetric.
     symmetric: bool,
-    /// z.
+    /// The direction z.
     direction: Vec<f64>,
     /// q = A z, on the whole grid.
     displacement: Vec<f64>,
-    /// A v, the sum of the steps since the last [`start`](Self::start), on the whole grid.
+    /// A v, on the whole grid, where v is the sum of the steps since the last [`start`](Self::start).
     product: Vec<f64>,
 }
 
@@ -80,12 +78,12 @@ impl Fft {
         self.product.fill(0.0);
     }
 
-    /// `A v` on the whole grid, for v the sum of all steps since the start.
+    /// `A v` on the whole grid, where v is the sum of all steps since the start.
     pub fn product(&self) -> &[f64] {
         &self.product
     }
 
-    /// One sweep; updates v and the residual.
+    /// Makes one sweep, which updates v and the residual.
     pub fn sweep(
         &mut self,
         v: &mut [f64],
@@ -103,7 +101,8 @@ impl Fft {
         self.step(v, residual, contact, relaxation, displace);
     }
 
-    /// A given correction with the step length that minimises the energy: `fill` writes it on the whole grid.
+    /// Adds a given correction to v, times the step length that minimises the energy, and updates the residual. `fill` writes the correction on the
+    /// whole grid.
     pub fn correct(
         &mut self,
         v: &mut [f64],
@@ -116,7 +115,7 @@ impl Fft {
         self.step(v, residual, contact, 1.0, displace);
     }
 
-    /// The step along z.
+    /// Makes a step along z on C.
     fn step(
         &mut self,
         v: &mut [f64],
@@ -139,7 +138,7 @@ impl Fft {
             qq += q[i] * q[i];
         }
         let alpha = relaxation * if self.symmetric && zq > 0.0 { rz / zq } else { rq / qq };
-        // No step along a direction that is 0 (the residual is 0) or not finite.
+        // alpha is not finite if z is 0 (because the residual is 0) or not finite. Then there is no step.
         if !alpha.is_finite() {
             return;
         }

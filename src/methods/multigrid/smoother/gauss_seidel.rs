@@ -4,12 +4,16 @@
 //! for I in the set, in order:  p_I += omega (b_I - sum_J A_IJ p_J) / A_II       with the values updated so far
 //! ```
 //!
-//! By direct summation a sweep costs O(n^2). Let `r = b - A p` be the residual before the sweep and `d` the changes by the sweep. Then the
-//! sum for element I is `r_I - sum over J < I of A_IJ d_J`, a triangular block Toeplitz product. So the changes of
-//! each finished row are transformed in x once. Their effect on later rows is summed in transformed space: by
-//! products within [`STRIP`] rows, and by FFT in y between halves of larger blocks (divide and conquer). Only the part
-//! within the current row is sequential. The iterates equal those of the dense sweep to round-off. The cost is O(n log^2 n), plus mx^2 my for
-//! the rows themselves if they are not [long](super::long_rows).
+//! By direct summation a sweep costs O(n^2). Let `r = b - A p` be the residual before the sweep, and `d` the changes of p by the sweep. Then the
+//! expression in parentheses is `r_I - sum over J < I of A_IJ d_J`, a triangular block Toeplitz product. It is computed as follows:
+//!
+//! - The changes of each finished row are transformed in x once, and their effect on later rows is summed in transformed space.
+//! - Within strips of 16 rows the effects are summed directly. In larger blocks the effect of the first half of the rows on the second half is a
+//!   product by FFT in y (divide and conquer).
+//! - Only the part within the current row is sequential.
+//!
+//! The iterates equal those of the direct sweep to round-off. The cost is O(n log^2 n), plus mx^2 my operations within the rows if the rows are not
+//! [long](super::long_rows).
 
 use super::long_rows::LongRows;
 use crate::error::Result;
@@ -19,38 +23,43 @@ use crate::operator::fft::{good_length, ColumnTransform, Complex};
 use crate::operator::row_transform::RowTransform;
 use crate::operator::zeros;
 
-/// Rows in a block whose mutual influence is summed directly.
+/// The number of rows of a strip, whose mutual influence is summed directly.
 const STRIP: usize = 16;
 
-/// Bins transformed together. They are contiguous in memory.
+/// The number of bins (wave numbers in x) whose columns are transformed together. They are contiguous in memory.
 const COLUMNS: usize = 8;
 
 /// Gauss-Seidel on one grid.
 pub struct GaussSeidel {
     pub(super) mx: usize,
     my: usize,
+    /// The transform of rows in x, with padding.
     rows: RowTransform<f64>,
-    /// Coefficients `c(k, 0)` inside a row, `k >= 0`.
+    /// The coefficients `c(k, 0)`, `k >= 0`, within a row.
     within_row: Vec<f64>,
+    /// The sequential part, if rows are long.
     long_rows: Option<LongRows>,
-    /// `[d][bin]`: transformed coefficients between rows that are `d < STRIP` apart, normalised.
+    /// `[d][bin]`: the transformed coefficients between rows that are `d < STRIP` apart, normalised.
     between_rows: Vec<Complex<f64>>,
-    /// For blocks of 2, 4, .. strips: the action of the first half on the second.
+    /// For blocks of 2, 4, ... strips: the effect of the first half of the rows on the second half.
     halves: Vec<Half>,
     /// `[my][bins]`: the transformed changes of each finished row.
     changes: Vec<Complex<f64>>,
-    /// `[my][bins]`: their transformed effect on each later row.
+    /// `[my][bins]`: the transformed effect of finished rows on each later row.
     gathered: Vec<Complex<f64>>,
+    /// Memory for one transformed row.
     bins: Vec<Complex<f64>>,
+    /// Memory for columns of a block.
     columns: Vec<Complex<f64>>,
+    /// The effect of finished rows on the current row; later the changes of the current row.
     row: Vec<f64>,
     scratch: Vec<Complex<f64>>,
 }
 
-/// The action of the first half of a block of rows on its second half.
+/// The effect of the first half of a block of rows on its second half.
 struct Half {
     transform: ColumnTransform<f64>,
-    /// `[bin][rows]`: transformed in y over the block.
+    /// `[bin][row]`: the coefficients, transformed in x, and in y over the block.
     kernel: Vec<Complex<f64>>,
 }
 
@@ -64,7 +73,7 @@ impl GaussSeidel {
         let mut row = zeros(px, "the smoother")?;
         let mut scratch = rows.scratch()?;
 
-        // Transform of the coefficients between rows d apart, for every d.
+        // The coefficients between rows that are d apart are transformed in x, for every d.
         let mut kernels: Vec<Complex<f64>> = zeros(my * nb, "the smoother")?;
         let normalisation = 1.0 / px as f64;
         for (d, bins) in kernels.chunks_exact_mut(nb).enumerate() {
@@ -111,7 +120,7 @@ impl GaussSeidel {
         })
     }
 
-    /// One sweep over the elements for which `in_set` holds. `residual` is `b - A p` on entry and is overwritten.
+    /// Makes one sweep over the elements for which `in_set` holds. `residual` is `b - A p` before, and is overwritten.
     pub fn sweep(
         &mut self,
         p: &mut [f64],
@@ -125,12 +134,12 @@ impl GaussSeidel {
         let end = (0..self.my).rfind(used).map_or(first, |last| last + 1);
         let nb = self.rows.bins();
         self.gathered[first * nb..end * nb].fill(Complex::default());
-        // Blocks of 2^level strips; the smallest that holds all rows of the set.
+        // A block has 2^level strips. The smallest block that contains all rows of the set is swept.
         let level = (0..).find(|&level| STRIP << level >= end - first).unwrap_or(0);
         self.block(first, end, level, &mut Sweep { p, residual, relaxation, in_set });
     }
 
-    /// Sweeps the rows from `first` to the end of its block of `STRIP << level` rows, or to `end`.
+    /// Sweeps the rows of a block of `STRIP << level` rows, which begins with `first`, up to the row before `end`.
     fn block<S: Fn(usize) -> bool + Copy>(&mut self, first: usize, end: usize, level: usize, sweep: &mut Sweep<'_, S>) {
         if level == 0 {
             for iy in first..end.min(first + STRIP) {
@@ -147,7 +156,7 @@ impl GaussSeidel {
         }
     }
 
-    /// Adds the effect of the finished rows `first..iy` of its strip to row `iy`.
+    /// Adds the effect of the finished rows `first..iy` of the same strip on row `iy`.
     fn gather_within_strip(&mut self, first: usize, iy: usize) {
         let nb = self.rows.bins();
         let to = &mut self.gathered[iy * nb..(iy + 1) * nb];
@@ -160,7 +169,7 @@ impl GaussSeidel {
         }
     }
 
-    /// Adds the effect of the finished rows `first..middle` to the rows `middle..end`.
+    /// Adds the effect of the finished rows `first..middle` on the rows `middle..end`.
     fn gather_from_first_half(&mut self, first: usize, middle: usize, end: usize, level: usize) {
         let nb = self.rows.bins();
         let half = &self.halves[level - 1];
@@ -189,7 +198,7 @@ impl GaussSeidel {
         }
     }
 
-    /// The sequential part: the elements of one row, one after the other.
+    /// Sweeps the elements of one row, one after the other: the sequential part.
     fn sweep_row<S: Fn(usize) -> bool + Copy>(&mut self, iy: usize, sweep: &mut Sweep<'_, S>) {
         let (mx, nb) = (self.mx, self.rows.bins());
         let elements = iy * mx..(iy + 1) * mx;
@@ -229,7 +238,7 @@ impl GaussSeidel {
     }
 }
 
-/// The fields of one sweep.
+/// The arrays and parameters of one sweep.
 struct Sweep<'a, S> {
     p: &'a mut [f64],
     residual: &'a mut [f64],

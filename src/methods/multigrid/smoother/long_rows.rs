@@ -1,38 +1,39 @@
 //! The sequential part of Gauss-Seidel in rows of many elements.
 //!
-//! The changes of earlier elements displace the later elements of a row. This is a product by a triangular Toeplitz
-//! matrix. Within strips of [`STRIP`] elements it is a direct sum. In larger blocks the influence of the first half on
-//! the second is a product by FFT. So a row of m elements takes O(m log^2 m) operations instead of m^2.
+//! The changes of earlier elements displace the later elements of a row. These displacements are the product of a triangular Toeplitz matrix with the
+//! changes. Within strips of [`STRIP`] elements the product is a direct sum. In larger blocks the influence of the first half on the second is a
+//! product by FFT. So a row of m elements takes O(m log^2 m) operations instead of m^2.
 
 use crate::error::Result;
 use crate::operator::fft::Complex;
 use crate::operator::row_transform::RowTransform;
 use crate::operator::zeros;
 
-/// Elements in a block whose mutual influence is summed directly.
+/// The number of elements of a strip, whose mutual influence is summed directly.
 const STRIP: usize = 512;
-/// Longest row whose influence is summed directly.
+/// In rows of at most this many elements the influence is summed directly.
 pub const SHORT: usize = 4096;
 
 /// The sequential part of rows of one length.
 pub struct LongRows {
-    /// Coefficients `c(k, 0)`, `k >= 0`, within a strip.
+    /// The coefficients `c(k, 0)`, `k >= 0`, within a strip.
     within_row: Vec<f64>,
-    /// For blocks of 2, 4, .. strips: the action of the first half on the second.
+    /// For blocks of 2, 4, ... strips: the effect of the first half of the elements on the second half.
     halves: Vec<Half>,
     row: Vec<f64>,
     bins: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
 }
 
+/// The effect of the first half of a block of elements on its second half.
 struct Half {
     transform: RowTransform<f64>,
-    /// The transform of the coefficients of a block, over its length.
+    /// The coefficients, transformed over the length of the block.
     kernel: Vec<Complex<f64>>,
 }
 
 impl LongRows {
-    /// The sequential part of long rows; None for short ones.
+    /// Sets up the sequential part for rows with the coefficients `within_row`; None if the rows are short.
     pub fn new(within_row: &[f64]) -> Result<Option<LongRows>> {
         let mx = within_row.len();
         if mx <= SHORT {
@@ -55,7 +56,8 @@ impl LongRows {
         Ok(Some(LongRows { within_row: within_row[..STRIP].to_vec(), halves, row, bins, scratch }))
     }
 
-    /// Sweeps the elements of a row: overwrites `residual` and writes the changes of p to `changes`. Those of other elements are unchanged.
+    /// Sweeps the elements of a row: overwrites `residual`, and writes the changes of p on elements of the set to `changes`. Elsewhere `changes`
+    /// keeps its values.
     pub fn sweep(
         &mut self,
         residual: &mut [f64],
@@ -101,7 +103,7 @@ impl LongRows {
     }
 }
 
-/// The fields of one sweep.
+/// The arrays and parameters of one sweep.
 struct Sweep<'a, S> {
     residual: &'a mut [f64],
     changes: &'a mut [f64],

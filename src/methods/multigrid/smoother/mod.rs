@@ -16,20 +16,20 @@ use crate::threads::Threads;
 /// The kind of a smoother.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SmootherKind {
-    /// Lexicographic Gauss-Seidel, x fastest; relaxation < 1: SUR, > 1: SOR. The paper's, with 0.8.
+    /// Gauss-Seidel in lexicographic order, x fastest: the smoother of the paper, with the relaxation 0.8. A relaxation below 1 is under-relaxation
+    /// (SUR), above 1 over-relaxation (SOR).
     GaussSeidel,
-    /// Gauss-Seidel in red-black order. Here it reduces errors less than lexicographic order, and needs one more product.
+    /// Gauss-Seidel in red-black order. For this problem it reduces errors less than lexicographic order, and needs one more product.
     RedBlack,
-    /// (Damped) Jacobi. Does not converge on fine grids: for comparison only.
+    /// (Damped) Jacobi, for comparison only: it does not converge on fine grids.
     Jacobi,
-    /// The inverse of a circulant, with the step length of least energy. Needs no more products than Gauss-Seidel, and
-    /// makes cycles nonlinear.
+    /// The inverse of a circulant, with the step length of least energy. It needs no more products than Gauss-Seidel, and makes the cycle nonlinear.
     Fft,
 }
 
 impl SmootherKind {
-    /// The relaxation that suits this smoother: 0.8 is the paper's best (table 1); a damped Jacobi needs 1/2; the FFT
-    /// smoother has its own step length.
+    /// The relaxation that suits this smoother. For Gauss-Seidel 0.8 is the best of the paper (table 1). Jacobi needs 1/2. The FFT smoother computes
+    /// a step length and needs no relaxation.
     pub fn default_relaxation(self) -> f64 {
         match self {
             SmootherKind::GaussSeidel | SmootherKind::RedBlack => 0.8,
@@ -43,16 +43,16 @@ impl SmootherKind {
 pub enum Smoother {
     /// See [`SmootherKind::GaussSeidel`].
     GaussSeidel(GaussSeidel),
-    /// See [`SmootherKind::RedBlack`]; the changes of the red elements, and the residual before the sweep.
+    /// See [`SmootherKind::RedBlack`]. The first array has the changes of the red elements, the second the residual before the sweep.
     RedBlack(GaussSeidel, Vec<f64>, Vec<f64>),
-    /// See [`SmootherKind::Jacobi`]; the diagonal coefficient.
+    /// See [`SmootherKind::Jacobi`]. The number is the diagonal coefficient.
     Jacobi(f64),
     /// See [`SmootherKind::Fft`].
     Fft(Box<Fft>),
 }
 
 impl Smoother {
-    /// Sets up a smoother.
+    /// Sets up a smoother on one grid.
     pub fn new(kind: SmootherKind, coefficients: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Smoother> {
         Ok(match kind {
             SmootherKind::GaussSeidel => Smoother::GaussSeidel(GaussSeidel::new(coefficients, grid)?),
@@ -65,13 +65,13 @@ impl Smoother {
         })
     }
 
-    /// Whether a sweep updates the residual.
+    /// Whether a sweep leaves the residual of the new p in `residual`.
     pub fn keeps_residual(&self) -> bool {
         matches!(self, Smoother::Fft(_))
     }
 
-    /// One sweep on `A p = b` over the elements in contact. `residual` is `b - A p` on entry; it is overwritten, or
-    /// updated by a smoother that [keeps it](Self::keeps_residual). `displace(changes, product)` computes `A changes`.
+    /// Makes one sweep on `A p = b` over the elements in contact. `residual` is `b - A p` before. It is overwritten, or updated by a smoother that
+    /// [keeps the residual](Self::keeps_residual). `displace(changes, product)` computes `product = A changes`.
     pub fn sweep(
         &mut self,
         p: &mut [f64],
@@ -82,8 +82,8 @@ impl Smoother {
     ) {
         match self {
             Smoother::GaussSeidel(gauss_seidel) => gauss_seidel.sweep(p, residual, relaxation, |i| contact[i]),
-            // A is dense, so the red elements depend on each other as well: each colour is swept in lexicographic order, and the
-            // residual is updated between.
+            // A is dense, so the elements of one colour depend on each other. Each colour is swept in lexicographic order, and the residual is
+            // updated between the two sweeps.
             Smoother::RedBlack(gauss_seidel, changes, before) => {
                 let mx = gauss_seidel.mx;
                 let red = |i: usize| (i / mx + i % mx) % 2 == 0;

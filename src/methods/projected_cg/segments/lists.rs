@@ -1,4 +1,4 @@
-//! Passes over a block that list elements, in SIMD vectors.
+//! Loops over a block that list elements, in SIMD vectors.
 
 use pulp::{Simd, WithSimd};
 
@@ -8,7 +8,7 @@ use crate::blocks::LANES;
 use crate::lanes::{Holds, Lanes};
 use crate::operator::fft::Real;
 
-/// The elements of [`Block::list`].
+/// Lists elements in contact: the work of [`Block::list`].
 pub(super) struct List<'a, T, F, const B: usize> {
     pub(super) block: Block<'a>,
     pub(super) list: &'a mut Vec<u32>,
@@ -35,6 +35,7 @@ impl<T: Real, F: Wanted<B>, const B: usize> WithSimd for List<'_, T, F, B> {
     }
 }
 
+/// Appends the wanted elements in contact of one segment, whose first element is `first`.
 #[inline(always)]
 fn list_segment<S: Simd, const B: usize>(
     simd: S,
@@ -51,7 +52,7 @@ fn list_segment<S: Simd, const B: usize>(
     }
 }
 
-/// Appends the elements, from `first` on, in lanes where `wanted` holds.
+/// Appends the elements of the lanes where `wanted` holds. `first` is the element of the first lane.
 #[inline(always)]
 fn append<S: Simd>(simd: S, first: usize, wanted: Holds<S>, list: &mut Vec<u32>) {
     if wanted.anywhere() {
@@ -62,7 +63,7 @@ fn append<S: Simd>(simd: S, first: usize, wanted: Holds<S>, list: &mut Vec<u32>)
     }
 }
 
-/// The change and the elements of [`Block::change_and_list_outside`].
+/// Changes all elements, and lists elements outside C: the work of [`Block::change_and_list_outside`].
 pub(super) struct Everywhere<'a, T, F, G, const A: usize, const B: usize> {
     pub(super) block: Block<'a>,
     pub(super) data: &'a mut [f64],
@@ -88,7 +89,7 @@ impl<T: Real, F: Becomes<A, B>, G: Wanted<A>, const A: usize, const B: usize> Wi
         if !behind.is_empty() {
             let mut last = rest(behind);
             everywhere(simd, (end_of_whole, &mut last), arrays.rest().segment(), (&change, &wanted), list);
-            // Removes padding.
+            // Padding counts as outside C and may be listed: it is removed from the end of the list.
             let end = block.elements().end as u32;
             list.truncate(list.partition_point(|i| *i < end));
             behind.copy_from_slice(&last[..behind.len()]);
@@ -96,6 +97,7 @@ impl<T: Real, F: Becomes<A, B>, G: Wanted<A>, const A: usize, const B: usize> Wi
     }
 }
 
+/// Changes the values of one segment, and appends its wanted elements outside C. `first` is its first element.
 #[inline(always)]
 fn everywhere<S: Simd, const A: usize, const B: usize>(
     simd: S,

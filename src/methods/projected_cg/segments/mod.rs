@@ -1,11 +1,11 @@
-//! The contact area in segments, and passes over it.
+//! The contact area as a list of segments, and loops over the segments.
 //!
-//! A segment is a vector of eight neighbours with at least one element in contact. Contact is often a small part of the
-//! grid: passes touch the segments only. On a rough surface a run of contact, of about five elements, does not fill a
-//! vector. The other elements of a segment are computed as well and masked, without a branch.
+//! A *segment* is a group of eight neighbours of which at least one is in contact. Contact is often a small part of the grid, so loops touch the
+//! segments only. On a rough surface about five neighbours are in contact, which do not fill a segment. The other elements of a segment are computed
+//! as well and masked, without a branch.
 //!
-//! Sums are taken per block of the grid and added in the order of the blocks. Neither the blocks nor the bits of the sums depend on the number of
-//! threads.
+//! The grid is divided into *blocks* of segments, which threads process in parallel. Each block has sums of its elements, which are added in the
+//! order of the blocks. Neither the blocks nor the bits of the sums depend on the number of threads.
 
 mod arrays;
 mod block;
@@ -25,45 +25,48 @@ use crate::grid::Grid;
 use crate::memory::{keep, reserve, sparse};
 use crate::threads::Threads;
 
-/// Most sums of a pass.
+/// The largest number of sums in one loop.
 const MOST_SUMS: usize = 9;
 
 /// The segments of all blocks.
 pub struct Segments {
-    /// Elements of a block, whole segments; the last block may have fewer.
+    /// The number of elements of a block, a multiple of eight. The last block may have fewer.
     block: usize,
+    /// For each block: its segments.
     found: Vec<Found>,
-    /// Elements in contact.
+    /// The number of elements in contact.
     count: usize,
-    /// The version of the contact area: the number of times it was found.
+    /// The version of the contact area, which increases with each change.
     version: u64,
+    /// For each block: its sums in the last loop.
     sums: Vec<[f64; MOST_SUMS]>,
-    /// Elements of each block.
+    /// For each block: the elements that the last loop listed, because they may enter or leave C.
     listed: Vec<Vec<u32>>,
     threads: Threads,
 }
 
-/// The segments of a block, counted from its first.
+/// The segments of one block.
 #[derive(Default)]
 struct Found {
+    /// The numbers of the segments; number k has the elements 8 k to 8 k + 7 of the block.
     segments: Vec<u32>,
-    /// Elements in contact.
+    /// The number of elements in contact.
     count: usize,
-    /// Whether the segments are out of date.
+    /// Whether the contact area has changed since the segments were found.
     changed: bool,
-    /// The version in which they were found.
+    /// The version of the contact area in which the segments were found.
     version: u64,
 }
 
 impl Found {
-    /// The block of these segments.
+    /// The block of these segments, which begins at the element `start` and has at most `length` elements.
     fn block<'a>(&'a self, start: usize, length: usize, contact: &'a [bool]) -> Block<'a> {
         Block::new(start, contact, length, &self.segments)
     }
 }
 
 impl Segments {
-    /// No contact. Memory for any contact area is reserved, and touched when needed.
+    /// Creates the list of an empty contact area. Memory for any contact area is reserved, and first touched when needed.
     pub fn new(grid: &Grid, threads: &Threads) -> Result<Segments> {
         let block = (grid.rows_of_blocks(BLOCKS, BLOCK) * grid.mx).next_multiple_of(LANES);
         let blocks = grid.len().div_ceil(block);
@@ -77,25 +80,25 @@ impl Segments {
         Ok(Segments { block, found, count: 0, version: 0, sums, listed, threads: threads.clone() })
     }
 
-    /// Number of elements in contact.
+    /// The number of elements in contact.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// The version of the contact area: it rises with each change.
+    /// The version of the contact area, which increases with each change.
     pub fn version(&self) -> u64 {
         self.version
     }
 
-    /// Whether elements of some rows may have changed sides since a version.
+    /// Whether any of these elements may have entered or left C since a version.
     pub fn changed_since(&self, version: u64, elements: Range<usize>) -> bool {
         self.found[elements.start / self.block..elements.end.div_ceil(self.block)]
             .iter()
             .any(|block| block.version > version)
     }
 
-    /// Calls `changes(element)` for each element listed by the last pass, in the order of the blocks. The element enters or leaves C if this returns
-    /// true.
+    /// Calls `changes(element)` for each element that the last loop listed, in the order of the blocks. `changes` returns whether the element enters
+    /// or leaves C.
     pub fn change_listed(&mut self, mut changes: impl FnMut(usize) -> bool) {
         for (block, listed) in self.found.iter_mut().zip(&self.listed) {
             for &i in listed {
@@ -104,17 +107,17 @@ impl Segments {
         }
     }
 
-    /// Marks all segments as out of date.
+    /// Marks the segments of all blocks as out of date.
     pub fn change_all(&mut self) {
         self.found.iter_mut().for_each(|block| block.changed = true);
     }
 
-    /// Whether the segments are up to date.
+    /// Whether the segments of all blocks are up to date.
     fn are_found(&self) -> bool {
         !self.found.iter().any(|block| block.changed)
     }
 
-    /// Finds the segments of the blocks that changed.
+    /// Finds the segments of the blocks in which the contact area has changed.
     pub fn find(&mut self, contact: &[bool]) {
         if self.are_found() {
             return;
@@ -137,7 +140,7 @@ impl Segments {
         self.count = self.found.iter().map(|block| block.count).sum();
     }
 
-    /// Sums over C, the elements in `contact`, whose segments are up to date: `work(block)` returns the sums of a block.
+    /// Adds up the sums of all blocks, which `work(block)` returns. The segments of `contact` must be up to date.
     pub fn sum<const K: usize>(
         &mut self,
         contact: &[bool],
@@ -156,7 +159,7 @@ impl Segments {
         self.total()
     }
 
-    /// As [`sum`](Self::sum), changing the elements of `data` on the way: `work(block, its part of data)`.
+    /// As [`sum`](Self::sum), where `work(block, its part of data)` also changes `data`.
     pub fn sum_changing<A: Send, const K: usize>(
         &mut self,
         contact: &[bool],
@@ -176,7 +179,7 @@ impl Segments {
         self.total()
     }
 
-    /// Changes the elements of `data`: `work(block, its part of data, elements)` lists elements for [`listed`](Self::listed).
+    /// Calls `work(block, its part of data, list)` for each block. It may change the data, and adds elements that may enter or leave C to the list.
     pub fn list_changing<A: Send>(
         &mut self,
         contact: &[bool],
@@ -195,11 +198,12 @@ impl Segments {
         );
     }
 
-    /// The elements listed by the last pass, in the order of the blocks.
+    /// The elements that the last loop listed, in the order of the blocks.
     pub fn listed(&self) -> impl Iterator<Item = usize> + '_ {
         self.listed.iter().flatten().map(|&i| i as usize)
     }
 
+    /// The sums of all blocks, added up in the order of the blocks.
     fn total<const K: usize>(&self) -> [f64; K] {
         let mut total = [0.0; K];
         for sums in &self.sums {

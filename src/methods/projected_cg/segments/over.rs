@@ -1,4 +1,4 @@
-//! The passes over the segments of a block.
+//! The loops over all blocks, and those over one block, by formulas for an element. `a` and `b` are arrays on the whole grid.
 
 use super::arrays::Arrays;
 use super::block::{Becomes, Block, Terms, Wanted};
@@ -8,7 +8,7 @@ use super::Segments;
 use crate::operator::fft::Real;
 
 impl Segments {
-    /// [`sum`](Segments::sum) of terms; a and b are arrays on the whole grid.
+    /// The K sums over C of `terms`. The segments of `contact` must be up to date.
     pub fn sum_of<T: Real, const A: usize, const B: usize, const K: usize>(
         &mut self,
         contact: &[bool],
@@ -23,7 +23,7 @@ impl Segments {
         )
     }
 
-    /// Changes an array on C, whose segments are up to date; a and b are arrays on the whole grid.
+    /// Changes an array on C. The segments of `contact` must be up to date.
     pub fn change<D: Real, T: Real, const A: usize, const B: usize>(
         &mut self,
         contact: &[bool],
@@ -44,7 +44,7 @@ impl Segments {
 }
 
 impl Block<'_> {
-    /// Sums over the elements of the block in contact; a and b are arrays on the whole grid.
+    /// The K sums of `terms` over the elements of the block in contact.
     #[inline(always)]
     pub fn sum<T: Real, const A: usize, const B: usize, const K: usize>(
         self,
@@ -56,7 +56,7 @@ impl Block<'_> {
         pulp::Arch::new().dispatch(Sum { block: self, arrays, terms })
     }
 
-    /// Changes the block's part of an array on C; a and b are arrays on the whole grid.
+    /// Changes `data`, the block's part of an array, on the elements in contact.
     #[inline(always)]
     pub fn change<D: Real, T: Real, const A: usize, const B: usize>(
         self,
@@ -69,7 +69,7 @@ impl Block<'_> {
         pulp::Arch::new().dispatch(Changes { block: self, data, arrays, change });
     }
 
-    /// Appends the wanted elements in contact, by the block's part of an array and by arrays b on the whole grid.
+    /// Appends the wanted elements in contact to `list`. `data` is the block's part of an array, whose values decide together with the arrays b.
     #[inline(always)]
     pub fn list<T: Real, const B: usize>(
         self,
@@ -82,8 +82,8 @@ impl Block<'_> {
         pulp::Arch::new().dispatch(List { block: self, list, data, arrays, wanted });
     }
 
-    /// Changes all of the block's part of an array, then appends the wanted elements outside C, by their new values and by arrays a on the whole
-    /// grid. The change also uses arrays b.
+    /// Changes all of `data`, the block's part of an array, by the arrays a and b. Appends the wanted elements outside C to `list`: their new values
+    /// decide together with the arrays a.
     #[inline(always)]
     pub fn change_and_list_outside<T: Real, const A: usize, const B: usize>(
         self,

@@ -1,5 +1,5 @@
-//! Passes over the segments of a block: sums, and changes of an array on C, in SIMD vectors. No bit depends on these: a sum is taken in lanes, one
-//! for each place in a segment.
+//! Loops over the segments of a block in SIMD vectors: sums, and changes of an array on C. No bit depends on the length of the vectors: each sum has
+//! eight parts, one for each position in a segment.
 
 use pulp::{Simd, WithSimd};
 
@@ -10,7 +10,7 @@ use crate::lanes::Lanes;
 use crate::operator::fft::Real;
 use crate::sums::Value;
 
-/// The sums of [`Block::sum`].
+/// Computes sums over the elements in contact: the work of [`Block::sum`].
 pub(super) struct Sum<'a, T, F, const A: usize, const B: usize, const K: usize> {
     pub(super) block: Block<'a>,
     pub(super) arrays: Arrays<'a, T, A, B>,
@@ -35,6 +35,7 @@ impl<T: Real, F: Terms<A, B, K>, const A: usize, const B: usize, const K: usize>
     }
 }
 
+/// Adds the terms of one segment to the sums.
 #[inline(always)]
 fn add<S: Simd, const A: usize, const B: usize, const K: usize>(
     simd: S,
@@ -51,7 +52,7 @@ fn add<S: Simd, const A: usize, const B: usize, const K: usize>(
     }
 }
 
-/// The changes of [`Block::change`].
+/// Changes values on the elements in contact: the work of [`Block::change`].
 pub(super) struct Changes<'a, D, T, F, const A: usize, const B: usize> {
     pub(super) block: Block<'a>,
     pub(super) data: &'a mut [D],
@@ -78,6 +79,7 @@ impl<D: Real, T: Real, F: Becomes<A, B>, const A: usize, const B: usize> WithSim
     }
 }
 
+/// Changes the values of one segment on its elements in contact.
 #[inline(always)]
 fn change_segment<D: Real, S: Simd, const A: usize, const B: usize>(
     simd: S,
