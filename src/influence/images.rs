@@ -80,8 +80,8 @@ pub(super) struct Far {
 }
 
 /// The number of near images on either side in a direction with the period `length`. In this direction the polynomial holds on `[-half, half]`,
-/// in the other one on `[-half_across, half_across]`. All images beyond the near ones lie outside the ellipse about this interval with semi-axes
-/// of 2.4 and 2.2 half-lengths.
+/// in the other one on `[-half_across, half_across]`. Images beyond the near ones have no singularity inside the ellipse about `[-half, half]` in
+/// the complex plane with semi-axes of 2.4 and 2.2 half-lengths.
 fn reach(length: f64, half: f64, half_across: f64) -> usize {
     (f64::max(2.4 * half, half + 2.2 * half_across) / length).ceil() as usize - 1
 }
