@@ -129,6 +129,7 @@ impl Attraction {
         self.law.steepness() * work / self.range / self.range * self_influence
     }
 
+    /// The distance in ranges; a negative one counts as 0.
     #[inline]
     fn ranges(&self, e: f64) -> f64 {
         e.max(0.0) / self.range

@@ -16,7 +16,7 @@ use crate::threads::Threads;
 
 /// A solver of the contact problem `e = h - approach + A q`, `q >= 0`, `e >= 0`, `q e = 0`, which is that of adhesion with frozen attraction.
 pub trait Frozen: Send + Sync {
-    /// Solves from `state` until the residual is below a tolerance, or for a number of cycles: `goal` is both.
+    /// Solves from `state`. `goal` has the tolerance of the residual and the largest number of cycles.
     fn solve(
         &mut self,
         problem: &mut contact::Problem,
@@ -158,7 +158,7 @@ impl Level {
         m.apply_alone(z.as_flattened_mut(), workspace);
     }
 
-    /// Adds the products on this grid since the last call to those of the solve.
+    /// Adds the products that this grid has made since the last call to the count of the solve.
     pub fn count_products(&mut self, monitor: &mut Monitor<'_>) {
         monitor.count_products(self.problem.take_products(), self.work);
     }

@@ -95,7 +95,7 @@ pub enum Pace {
 pub struct Goal {
     /// The tolerance of the largest residual.
     pub tolerance: f64,
-    /// The sum of p, if the force is given.
+    /// The wanted sum of p. `None`: the approach is given.
     pub wanted: Option<f64>,
     /// Whether a fresh product has to confirm the residuals.
     pub certified: bool,

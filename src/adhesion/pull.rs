@@ -255,7 +255,8 @@ impl Continuation<'_, '_, '_> {
         Ok(PathEnd::Least { sum: best.sum, approach: best.approach() })
     }
 
-    /// The first step of a path: the fraction `part` of the length of the contact.
+    /// The first step of a path: the fraction `part` of the length of the contact, or LOCKED_STEP ranges if the surfaces are locked in contact or
+    /// apart.
     pub fn first_step(&mut self, part: f64) -> Result<f64> {
         if is_locked(self.level) || self.level.now.contact.iter().all(|&inside| !inside) {
             return Ok(LOCKED_STEP * self.level.surface.attraction.range);

@@ -112,7 +112,7 @@ pub fn measures(level: &Level, measured: &Measured) -> Measures {
     let (surface, now, grid) = (&level.surface, &level.now, level.problem.grid);
     let threads = &level.problem.threads;
     let a0 = level.self_influence();
-    // The sums of q |e|, of |p u|, and of the products of q and its displacement of the own element.
+    // Sums over the elements of |q e|, |p u| and a0 q^2.
     let [work, elastic, own] = fields::sum(threads, now.u.len(), |i| {
         let e = surface.distance(i, now).abs();
         let q = contact_pressure(level, i).abs();

@@ -50,8 +50,8 @@ impl Solver {
         &self.levels[0]
     }
 
-    /// Takes the arrays of the next solve: the undeformed distances, and arrays for pressures and displacements. The latter are read only if an
-    /// initial state says so.
+    /// Takes the arrays of the next solve: undeformed distances, pressures and displacements. The pressures are read only if an initial state
+    /// refers to them; the displacements may have any values.
     pub fn lend(&mut self, [h, p, u]: [Vec<f64>; 3]) {
         // `collect` reuses the memory of the arrays.
         let ones = |values: Vec<f64>| values.into_iter().map(|value| [value]).collect();

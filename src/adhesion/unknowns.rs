@@ -216,7 +216,8 @@ pub fn measure(
 ) -> Measured {
     let Unknowns { p, u, contact } = unknowns;
     let (p, approach, u) = (&p.field, p.border[0], &*u);
-    // Sums of squares of e, h - approach, p and q in C, of p + sigma outside, and of p everywhere; sums of p, |p|, |q| in C and h - approach in C.
+    // `ee`, `dd`, `pc`, `qc`: sums of squares over C of e, h - approach, p and q; `off`: of p + sigma outside; `pp`: of p everywhere. `sum`,
+    // `all`: sums of p and |p|; `repulsion`, `distances`: sums over C of |q| and h - approach.
     let [ee, dd, count, off, pp, pc, sum, all, qc, repulsion, changed, distances] =
         fields::over(threads, contact.chunks_mut(fields::BLOCK), |first, contact| {
             let mut sums = [0.0; 12];

@@ -25,12 +25,12 @@ pub(super) struct Given<'a> {
 }
 
 impl Given<'_> {
-    /// The coefficients of row ky at offsets `0..mx`.
+    /// The caller's coefficients of row ky at offsets `0..mx` in x.
     fn right(&self, ky: i64, mx: usize) -> &[f64] {
         &self.values[(ky + self.cy as i64) as usize * 2 * self.cx + self.cx..][..mx]
     }
 
-    /// The coefficients of row ky at offsets `1 - mx..=0`.
+    /// The caller's coefficients of row ky at offsets `1 - mx..=0` in x.
     fn left(&self, ky: i64, mx: usize) -> &[f64] {
         &self.values[(ky + self.cy as i64) as usize * 2 * self.cx + self.cx + 1 - mx..][..mx]
     }

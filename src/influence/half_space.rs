@@ -38,7 +38,7 @@ pub const MOST_TERMS: usize = SERIES[0].1;
 /// All quadrants of one shape have at most 4.4 MB. A quadrant within one that is kept is not computed.
 const QUADRANTS: [usize; 12] = [8, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
 
-/// The largest quadrant that is computed as a whole whatever part of it is needed.
+/// The largest quadrant that is computed as a whole, even if only a small part of it is needed.
 const SMALL_QUADRANT: usize = 64;
 
 /// The Boussinesq-Love coefficients of an elastic half-space on elements of one size.

@@ -19,8 +19,8 @@
 //! contributes only its mean along x. Integrated over an element, this mean is
 //!
 //! ```text
-//! one period    c dx 2/L  integral of  log(W/|y|) dy                   (W drops out with two)
-//! two periods   c dx 2/L  integral of -log(2 |sin(pi y/Ly)|) dy
+//! one period    c dx 2/L  integral of  log(W/|y|) dy
+//! two periods   c dx 2/L  integral of -log(2 |sin(pi y/Ly)|) dy        (independent of W)
 //! ```
 
 use std::f64::consts::PI;

@@ -152,7 +152,7 @@ impl RowTables {
         self.row(jy, iy)[self.column(kx)]
     }
 
-    /// Fills `out` with the coefficients between the loaded row jy and row iy. If all tables are even, these are those at offsets `0..mx`.
+    /// Fills `out` with the coefficients between the loaded row jy and row iy. If all tables are even, `out` gets those at offsets `0..mx`.
     /// Otherwise `out` is a period that begins at offset 0, has the negative offsets at its end, and zeros between.
     pub fn fill(&self, jy: usize, iy: usize, out: &mut [f64]) {
         let (row, mx, n) = (self.row(jy, iy), self.mx, out.len());

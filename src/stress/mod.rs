@@ -26,6 +26,7 @@
 mod body;
 mod depth;
 mod element;
+mod exponential;
 mod kernels;
 mod loads;
 mod of_scene;

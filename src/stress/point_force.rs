@@ -27,15 +27,15 @@ pub type Values = [[Lanes; 6]; 3];
 
 /// Adds to `sum` the stresses by a force of size `force` for each load in `loaded`. The positions relative to the force have the given x, and one
 /// y and z.
-pub fn add(body: &Body, loaded: Loaded, place: (&Lanes, f64, f64), force: f64, sum: &mut Values) {
-    pulp::Arch::new().dispatch(Add { nu: body.poisson_ratio, loaded, place, force, sum });
+pub fn add(body: &Body, loaded: Loaded, position: (&Lanes, f64, f64), force: f64, sum: &mut Values) {
+    pulp::Arch::new().dispatch(Add { nu: body.poisson_ratio, loaded, position, force, sum });
 }
 
 /// The work of [`add`], which pulp compiles for the vector instructions of the machine.
 struct Add<'a> {
     nu: f64,
     loaded: Loaded,
-    place: (&'a Lanes, f64, f64),
+    position: (&'a Lanes, f64, f64),
     force: f64,
     sum: &'a mut Values,
 }
@@ -45,7 +45,7 @@ impl pulp::NullaryFnOnce for Add<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Add { nu, loaded, place: (x, y, z), force, sum } = self;
+        let Add { nu, loaded, position: (x, y, z), force, sum } = self;
         let h = 1.0 - 2.0 * nu;
         let scale = force / (2.0 * std::f64::consts::PI);
         let [mut l, mut m, mut n, mut w, mut s] = [[0.0; LANES]; 5];
@@ -77,7 +77,7 @@ impl pulp::NullaryFnOnce for Add<'_> {
     }
 }
 
-/// Adds the stresses by a force along the first of two lateral directions, with the direction cosines l, m. `place` has the index in `out` of
+/// Adds the stresses by a force along the first of two lateral directions, with the direction cosines l, m. `index` has the index in `out` of
 /// each component.
 #[inline(always)]
 fn in_x(h: f64, (l, m, n, w, s): (&Lanes, &Lanes, &Lanes, &Lanes, &Lanes), index: [usize; 6], out: &mut [Lanes; 6]) {

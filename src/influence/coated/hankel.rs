@@ -59,12 +59,12 @@ impl Hankel {
         clenshaw(&panels[panel], 2.0 * (v - panel as f64) - 1.0)
     }
 
-    /// F_1.
+    /// F_1 at the distance rho, which must lie on the panels of small rho.
     pub fn layer(&self, rho: f64) -> f64 {
         self.at(&self.layer, rho) / (1.0 + 0.25 * rho * rho).sqrt()
     }
 
-    /// F_B0.
+    /// F_B0 at the distance rho.
     pub fn substrate(&self, rho: f64) -> f64 {
         self.at(&self.substrate, rho) / rho
     }

@@ -13,8 +13,9 @@
 //!
 //! The integrand of T is smooth for any ratio of element size to thickness.
 
+use super::base::Base;
 use super::offsets::{first_beyond, first_of_half, first_of_substrate, COATED};
-use super::radial::{Base, Radial};
+use super::radial::Radial;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::gauss::rule;

@@ -8,6 +8,7 @@
 //! layer's material, b = 1, and beyond that of the substrate, b = B0. F_b is the radial correction to the base ([`Radial`]). With the same base
 //! at all distances, either digits would cancel or the integrand would have a singularity. A body without a coating has b = 1 and no correction.
 
+mod base;
 mod cache;
 mod hankel;
 mod layer;
@@ -26,9 +27,10 @@ mod waves;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+pub use base::Base;
 use offsets::{first_of_half, first_of_substrate, COATED};
 pub use periodic::CoatedPeriodic;
-pub use radial::{Base, Radial};
+pub use radial::Radial;
 pub use response::Response;
 pub use shear::{Across, Along};
 pub use tractions::Coat;

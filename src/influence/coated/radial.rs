@@ -21,6 +21,7 @@
 //!
 //! For stiff layers L is about `1.75 mu`, the length over which they spread a load as membranes.
 
+use super::base::{Base, SMOOTH};
 use super::hankel::Hankel;
 use super::polynomial::{chebyshev, evaluate, integral, node, powers, terms};
 use super::response::{Response, TERMS};
@@ -32,37 +33,6 @@ use crate::influence::gauss;
 pub const P: usize = 14;
 /// The bound on the omitted terms of a polynomial, relative to the half-space's `b/rho`.
 const LEFT_OUT: f64 = 1e-15;
-/// The w = 8 at rho = 2, below which panels have the layer as base.
-const SMOOTH: f64 = 8.0;
-
-/// The half-space that is the base of a radial function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Base {
-    /// b = 1: the half-space of the layer's material.
-    Layer,
-    /// b = B(0): the half-space of the substrate.
-    Substrate,
-}
-
-impl Base {
-    /// The base of the panel at `w = 4 + rho^2`.
-    pub(super) fn at(w: f64) -> Base {
-        if w < SMOOTH {
-            Base::Layer
-        } else {
-            Base::Substrate
-        }
-    }
-
-    /// The number of times `(1 - B0)/rho` that has to be added to F of this base to give F of the `other` base.
-    pub(super) fn to(self, other: Base) -> f64 {
-        match (self, other) {
-            (Base::Layer, Base::Substrate) => 1.0,
-            (Base::Substrate, Base::Layer) => -1.0,
-            _ => 0.0,
-        }
-    }
-}
 
 /// The radial functions F and M of a layer of unit thickness, as tables of polynomials.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,8 +10,9 @@
 //! Up to rho = 2 the panels hold I and Q with the layer as base, beyond with the substrate, as in [`Radial`]. With the other base, I has an
 //! additional multiple of `1/rho`, and Q one of `1/rho^3`.
 
+use super::base::Base;
 use super::polynomial::{chebyshev, evaluate, node, powers};
-use super::radial::{ends_of, panel_of, Base, Radial, P};
+use super::radial::{ends_of, panel_of, Radial, P};
 use super::response::Response;
 use super::shear::{Across, Along};
 

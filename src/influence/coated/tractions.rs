@@ -26,9 +26,10 @@
 
 use std::sync::Arc;
 
+use super::base::Base;
 use super::cache::Cache;
 use super::layer::{CORNERS, LINE_POINTS};
-use super::radial::{Base, Radial};
+use super::radial::Radial;
 use super::response::Response;
 use super::tensor::Tensor;
 use crate::influence::gauss::rule;
@@ -107,7 +108,7 @@ struct Place {
 impl Place {
     fn new(offset: [f64; 2], size: [f64; 2]) -> Place {
         let (distance, longer) = (offset[0].hypot(offset[1]), size[0].max(size[1]));
-        // F and g are smooth on the scale t, too, which is 1 here.
+        // F and g are smooth also on the scale t, which is 1 here.
         let smooth = distance.max(1.0) / longer;
         let is_near = smooth <= POINTS[0].0 && distance <= CORNERS * size[0].hypot(size[1]);
         let points = POINTS.iter().find(|(last, _)| smooth <= *last).map(|(_, points)| *points);
