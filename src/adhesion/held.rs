@@ -1,46 +1,45 @@
-//! The stable state under a prescribed force. If an equilibrium under this force is unstable, the stable one lies at a larger approach.
+//! Finds the stable state under a prescribed force. If an equilibrium under this force is unstable, the stable one lies at a larger approach.
 
 use super::begin::Search;
 use super::levels::prolong;
 use super::majorise::Descent;
 use super::nested::{self, coarse_goal};
 use super::newton::{newton, End, Goal};
-use super::place::{Met, Place, Walk};
+use super::path::{Continuation, GROWTH};
+use super::states::{PathEnd, SavedState, StateSums};
 use super::tangent::is_stable;
-use super::way::{Walker, GROWTH};
 use crate::error::Result;
 
-/// Most secant steps between two states.
+/// The largest number of secant steps between two states.
 const MOST_SECANTS: u32 = 40;
-/// Least distance of a secant step from both states, relative to the distance between them.
+/// The smallest distance of a secant step from both states, relative to the distance between them.
 const SECANT_MARGIN: f64 = 0.02;
-/// Most steps of growing approach; each is [`GROWTH`] times as long as the one before.
+/// The largest number of steps of increasing approach. Each is [`GROWTH`] times as long as the one before.
 const MOST_STEPS: u32 = 80;
 /// The first of these steps, relative to the length of the contact.
 const FIRST_STEP: f64 = 0.02;
-/// A prescribed pull is also sought on the branches of a pull-off if it is weaker than this many times the strongest
-/// pull found.
+/// A prescribed pull is also sought on the paths of a pull-off if it is weaker than this many times the strongest pull that was found.
 const PULL_MARGIN: f64 = 1.02;
 
-impl Walker<'_, '_, '_> {
-    /// Keeps the level's equilibrium of the wanted force if it is stable. Otherwise climbs to the stable one.
-    pub fn settle(&mut self) -> Result<Walk> {
-        let Some(wanted) = self.goal.wanted else { return Ok(Walk::Found) };
+impl Continuation<'_, '_, '_> {
+    /// Keeps the level's equilibrium under the wanted force if it is stable. Otherwise climbs to the stable one.
+    pub fn settle(&mut self) -> Result<PathEnd> {
+        let Some(wanted) = self.goal.wanted else { return Ok(PathEnd::Found) };
         if is_stable(self.level, true, self.monitor)? {
-            return Ok(Walk::Found);
+            return Ok(PathEnd::Found);
         }
         log::debug!("adhesion: an equilibrium at an approach of {:e} is not stable", self.level.now.approach());
         self.climb(wanted)
     }
 
-    /// Increases the approach from the level's state, whose sum is at most the wanted one, to the stable state of the wanted force.
-    pub fn climb(&mut self, mut sum_low: f64) -> Result<Walk> {
-        let Some(wanted) = self.goal.wanted else { return Ok(Walk::Lost) };
+    /// Increases the approach from the state of the level, whose sum of p is at most the wanted one, to the stable state under the wanted force.
+    pub fn climb(&mut self, mut sum_low: f64) -> Result<PathEnd> {
+        let Some(wanted) = self.goal.wanted else { return Ok(PathEnd::Lost) };
         let mut step = self.first_step(FIRST_STEP)?;
         if !(step > 0.0) {
-            return Ok(Walk::Lost);
+            return Ok(PathEnd::Lost);
         }
-        let mut best = Place::of(self.level, sum_low)?;
+        let mut best = SavedState::of(self.level, sum_low)?;
         let mut low = best.approach();
         for _ in 0..MOST_STEPS {
             let approach = low + step;
@@ -52,47 +51,48 @@ impl Walker<'_, '_, '_> {
             (low, sum_low) = (approach, sum);
             step *= GROWTH;
         }
-        self.level.now.copy_from(&best.at)?;
+        self.level.now.copy_from(&best.unknowns)?;
         Ok(self.lost())
     }
 
-    /// The state of the wanted force, between the `best` state of more force and a state of less.
-    pub fn between(&mut self, best: &mut Place, (mut sum_low, mut low): (f64, f64)) -> Result<Walk> {
-        let Some(wanted) = self.goal.wanted else { return Ok(Walk::Lost) };
+    /// Finds the stable state under the wanted force between the state `best`, of larger force, and a state of smaller force, given by its sum
+    /// and approach.
+    pub fn between(&mut self, best: &mut SavedState, (mut sum_low, mut low): (f64, f64)) -> Result<PathEnd> {
+        let Some(wanted) = self.goal.wanted else { return Ok(PathEnd::Lost) };
         for secant in 0..MOST_SECANTS {
             if self.goal.is_interrupted(self.monitor) {
-                self.level.now.copy_from(&best.at)?;
-                return Ok(Walk::Interrupted);
+                self.level.now.copy_from(&best.unknowns)?;
+                return Ok(PathEnd::Interrupted);
             }
             let part = ((best.sum - wanted) / (best.sum - sum_low)).clamp(SECANT_MARGIN, 1.0 - SECANT_MARGIN);
-            // Every third step bisects: secants may stall near one end.
+            // Every third step bisects, because secants may stall near one end.
             let part = if secant % 3 == 2 { 0.5 } else { part };
             let approach = best.approach() + part * (low - best.approach());
-            self.level.now.copy_from(&best.at)?;
+            self.level.now.copy_from(&best.unknowns)?;
             self.level.now.p.border = [approach];
             let (end, _) = newton(self.level, self.goal, true, self.monitor)?;
             let (reached, slack) = (self.level.now.approach(), best.approach() - low);
             let is_near = reached <= best.approach() + slack && reached >= low - slack;
             if end == End::Solved && is_near && is_stable(self.level, true, self.monitor)? {
-                return Ok(Walk::Found);
+                return Ok(PathEnd::Found);
             }
-            self.level.now.copy_from(&best.at)?;
+            self.level.now.copy_from(&best.unknowns)?;
             match self.solve_at(approach)? {
                 Some(sum) if sum > wanted => best.take(self.level, sum)?,
                 Some(sum) => (sum_low, low) = (sum, approach),
                 None => {
-                    self.level.now.copy_from(&best.at)?;
+                    self.level.now.copy_from(&best.unknowns)?;
                     return Ok(self.lost());
                 }
             }
         }
-        Ok(Walk::Lost)
+        Ok(PathEnd::Lost)
     }
 }
 
 impl Search<'_, '_, '_> {
-    /// Follows the stable branch down on the coarsest grid, which is cheap, then solves for the force from grid to grid. Returns false if there is
-    /// one grid only, if a solve fails, or if the result is not stable.
+    /// Follows the stable branch down on the coarsest grid, which is cheap, and then solves for the force from grid to grid. Returns false if
+    /// there is only one grid, if a solve fails, or if the result is not stable.
     pub fn is_found_from_coarse(&mut self, goal: Goal) -> Result<bool> {
         let last = self.levels.len() - 1;
         if last == 0 {
@@ -104,7 +104,8 @@ impl Search<'_, '_, '_> {
         self.monitor.enter_grid();
         let ended = nested::solve(&mut self.levels[last..], unloaded, (self.start, self.make), self.monitor)?;
         let is_found = ended.end == Descent::By(End::Solved)
-            && Walker::new(&mut self.levels[last], coarse, self.make, self.monitor).walk(None)? == Walk::Found;
+            && Continuation::new(&mut self.levels[last], coarse, self.make, self.monitor).follow(None)?
+                == PathEnd::Found;
         if !is_found {
             return Ok(false);
         }
@@ -121,32 +122,33 @@ impl Search<'_, '_, '_> {
         is_stable(&mut self.levels[0], true, self.monitor)
     }
 
-    /// Seeks a state for a pull slightly stronger than the strongest one of the walk `known`. Elements that are coarse for the range separate
-    /// one by one, so the strongest pull depends on the steps of the walk. A pull-off takes other steps, because it does not stop at a force. If
-    /// it holds the prescribed pull, `climb` finds the state of that pull. If it only holds more than `known`, its end replaces `known`.
-    pub fn hold_pull_off(&mut self, known: Walk, goal: Goal) -> Result<Walk> {
+    /// Seeks a state for a pull that is slightly stronger than the strongest one of `known`, the end of the earlier paths. Elements that are
+    /// coarse for the range separate one by one, so that the strongest pull depends on the steps of a path. The paths of a pull-off have other
+    /// steps, because they do not stop at a force. If the pull-off holds the prescribed pull, `climb` finds the state under this pull. If it only
+    /// holds more than `known`, its end replaces `known`.
+    pub fn hold_pull_off(&mut self, known: PathEnd, goal: Goal) -> Result<PathEnd> {
         let Some(wanted) =
-            goal.wanted.filter(|wanted| matches!(known, Walk::Least { sum, .. } if *wanted > PULL_MARGIN * sum))
+            goal.wanted.filter(|wanted| matches!(known, PathEnd::Least { sum, .. } if *wanted > PULL_MARGIN * sum))
         else {
             return Ok(known);
         };
-        let strongest = Place::of(&self.levels[0], Met::of(&self.levels[0]).sum)?;
-        let walk = self.down_from_no_load(Goal { wanted: None, ..goal })?;
-        match (walk, known) {
-            (Walk::Least { sum, .. }, _) if sum <= wanted => {
+        let strongest = SavedState::of(&self.levels[0], StateSums::of(&self.levels[0]).sum)?;
+        let path_end = self.down_from_no_load(Goal { wanted: None, ..goal })?;
+        match (path_end, known) {
+            (PathEnd::Least { sum, .. }, _) if sum <= wanted => {
                 let most = self.monitor.count.cycles.saturating_add(goal.most);
-                self.walker(Goal { most, ..goal }).climb(sum)
+                self.continuation(Goal { most, ..goal }).climb(sum)
             }
-            (Walk::Least { sum, .. }, Walk::Least { sum: least, .. }) if sum < least => Ok(walk),
-            (Walk::Interrupted, _) => {
+            (PathEnd::Least { sum, .. }, PathEnd::Least { sum: least, .. }) if sum < least => Ok(path_end),
+            (PathEnd::Interrupted, _) => {
                 let level = &mut self.levels[0];
                 level.refresh()?;
                 level.count_products(self.monitor);
                 let measured = level.measure(false, None);
                 if !(measured.is_state(goal.tolerance) && measured.pressures < strongest.sum) {
-                    level.now.copy_from(&strongest.at)?;
+                    level.now.copy_from(&strongest.unknowns)?;
                 }
-                Ok(walk)
+                Ok(path_end)
             }
             _ => Ok(known),
         }

@@ -1,4 +1,4 @@
-//! Laws of attraction: the traction sigma between two surfaces at a distance e, positive where they attract each other.
+//! Laws of attraction: the traction sigma between two surfaces at a distance e. Positive sigma attracts.
 //!
 //! ```text
 //! w = integral_0^inf sigma(e) de      the work of adhesion
@@ -13,28 +13,28 @@
 //! VAN_DER_WAALS   (1 + t/2)^-3           3/2 (1 + t/2)^-4               (1 + t/2)^-2
 //! ```
 //!
-//! All have sigma(0) = w/rho. EXPONENTIAL is the one of the contact-mechanics challenge (Muser et al. 2017), DUGDALE that of Maugis 1992
-//! with a smeared edge, VAN_DER_WAALS that of half-spaces with w/rho = A_H/(6 pi (2 rho)^3).
+//! All laws have sigma(0) = w/rho. EXPONENTIAL is the law of the contact-mechanics challenge (Muser et al. 2017). DUGDALE is that of Maugis 1992
+//! with an edge that is smeared over eta. VAN_DER_WAALS is that of two half-spaces, w/rho = A_H/(6 pi (2 rho)^3), with Hamaker's constant A_H.
 
-/// How the attraction falls with the distance.
+/// How the attraction falls with the distance t = e/rho.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Law {
-    /// Exponentially.
+    /// `exp(-t)`.
     #[default]
     Exponential,
-    /// Constant up to the range, 0 beyond, the edge smeared linearly over this part of the range on both sides.
+    /// Constant up to the range and 0 beyond. The number is eta: the edge is smeared linearly from 1 - eta to 1 + eta.
     Dugdale(f64),
-    /// As a parabola that ends at three ranges.
+    /// A parabola in t that ends at three ranges.
     Cubic,
-    /// As the inverse third power of `e + 2 rho`.
+    /// The inverse third power of `e + 2 rho`.
     VanDerWaals,
 }
 
-/// Ranges beyond which the exponential law counts as 0: it is at most a rounding error of sigma(0) there, 2.3e-16.
+/// The number of ranges beyond which the exponential law counts as 0. There it is at most a rounding error of sigma(0), 2.3e-16.
 const EXPONENTIAL_REACH: f64 = 36.0;
 
 impl Law {
-    /// The largest s(e) rho^2/w, which determines the shortest range that an element resolves.
+    /// The largest s(e) rho^2/w. It determines the shortest range that an element resolves.
     pub fn steepness(self) -> f64 {
         match self {
             Law::Exponential => 1.0,
@@ -44,12 +44,12 @@ impl Law {
         }
     }
 
-    /// The shortest range that elements of self-influence a0 resolve. At this range `kappa = s a0`, with the largest s, has the given value.
+    /// The shortest range that elements with the self-influence a0 resolve: the range at which the largest `s a0` is `kappa`.
     pub fn shortest_range(self, work: f64, self_influence: f64, kappa: f64) -> f64 {
         (self.steepness() * work * self_influence / kappa).sqrt()
     }
 
-    /// sigma rho/w at t = e/rho.
+    /// sigma rho/w as a function of t = e/rho.
     #[inline]
     fn traction(self, t: f64) -> f64 {
         match self {
@@ -61,7 +61,7 @@ impl Law {
         }
     }
 
-    /// s rho^2/w.
+    /// s rho^2/w as a function of t.
     #[inline]
     fn slope(self, t: f64) -> f64 {
         match self {
@@ -73,7 +73,7 @@ impl Law {
         }
     }
 
-    /// W/w.
+    /// W/w as a function of t.
     #[inline]
     fn work_left(self, t: f64) -> f64 {
         match self {
@@ -86,35 +86,35 @@ impl Law {
     }
 }
 
-/// A law with its range.
+/// A law of attraction with its range.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Attraction {
     /// The law.
     pub law: Law,
-    /// rho, a length.
+    /// The range rho, a length.
     pub range: f64,
 }
 
 impl Attraction {
-    /// sigma at a distance, negative distances counting as 0; w: the work of adhesion there.
+    /// sigma at a distance e, with the work of adhesion w. A negative distance counts as 0.
     #[inline]
     pub fn traction(&self, w: f64, e: f64) -> f64 {
         w / self.range * self.law.traction(self.ranges(e))
     }
 
-    /// s at a distance.
+    /// The stiffness s at a distance e.
     #[inline]
     pub fn stiffness(&self, w: f64, e: f64) -> f64 {
         w / self.range / self.range * self.law.slope(self.ranges(e))
     }
 
-    /// W at a distance.
+    /// The work W that is left at a distance e.
     #[inline]
     pub fn work_left(&self, w: f64, e: f64) -> f64 {
         w * self.law.work_left(self.ranges(e))
     }
 
-    /// The distance at which the exponential law has the traction sigma; infinite if there is none.
+    /// The distance at which the exponential law has the traction sigma; infinite if sigma is not positive.
     #[inline]
     pub fn distance_of(&self, w: f64, sigma: f64) -> f64 {
         if sigma > 0.0 {
@@ -124,11 +124,12 @@ impl Attraction {
         }
     }
 
-    /// kappa: the largest stiffness times an element's influence on itself. Above 1 a single element snaps.
+    /// kappa, the largest stiffness times an element's influence on itself. Above 1 a single element snaps.
     pub fn resolution(&self, work: f64, self_influence: f64) -> f64 {
         self.law.steepness() * work / self.range / self.range * self_influence
     }
 
+    /// The distance in ranges; a negative one counts as 0.
     #[inline]
     fn ranges(&self, e: f64) -> f64 {
         e.max(0.0) / self.range

@@ -1,4 +1,4 @@
-//! One grid: the operator, its preconditioner, the unknowns, and the solver of the contact problem with frozen attraction.
+//! One grid: its operator and preconditioner, the unknowns, and the solver of contact problems with frozen attraction.
 
 use std::sync::Arc;
 
@@ -14,9 +14,9 @@ use crate::progress::{Monitor, Outcome};
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// Solves `e = h - approach + A q`, `q >= 0`, `e >= 0`, `q e = 0` from a state: the contact problem with frozen attraction.
+/// A solver of the contact problem `e = h - approach + A q`, `q >= 0`, `e >= 0`, `q e = 0`, which is that of adhesion with frozen attraction.
 pub trait Frozen: Send + Sync {
-    /// Solves to a tolerance of the residual, or for a number of cycles.
+    /// Solves from `state`. `goal` has the tolerance of the residual and the largest number of cycles.
     fn solve(
         &mut self,
         problem: &mut contact::Problem,
@@ -25,52 +25,54 @@ pub trait Frozen: Send + Sync {
         monitor: &mut Monitor<'_>,
     ) -> Result<Outcome>;
 
-    /// Bytes held.
+    /// Bytes of the solver.
     fn bytes(&self) -> usize;
 }
 
-/// The solver of frozen problems, and its state.
-pub type Still = (Box<dyn Frozen>, State);
+/// A solver of frozen problems, and the state of its contact problem.
+pub type FrozenSolver = (Box<dyn Frozen>, State);
 
-/// Makes the solver of frozen problems on a grid.
+/// Makes a solver of frozen problems on a grid.
 pub type MakeFrozen<'a> = &'a dyn Fn(&contact::Problem) -> Result<Box<dyn Frozen>>;
 
-/// In [`Level::open`] an element leaves the contact if its q - e/a0 exceeds the least one by less than this share of the range of q - e/a0.
+/// In [`Level::open`] an element leaves the contact if its q - e/a0 exceeds the smallest one by less than this fraction of the range of q - e/a0.
 const OPENING_PRESSURE: f64 = 0.01;
 
-/// M, the inverse of a circulant near A, in single precision. Residuals are not extended beyond C, where separate equations determine
-/// them: a sphere of Tabor's parameter 3 on 256 x 256 elements takes 18 to 21 products, and 30 to 47 with the normal problem's extension.
+/// The preconditioner M in single precision: the inverse of a circulant near A. Residuals are not extended beyond C, because separate equations
+/// determine the pressures there. A sphere of Tabor's parameter 3 on 256 x 256 elements takes 18 to 21 products without the normal problem's
+/// extension, and 30 to 47 with it.
 struct Inverse {
-    /// M of the coefficients over a power of two near a0, so that they are near 1.
+    /// M of the coefficients divided by a power of two near a0, so that its numbers are near 1.
     m: Preconditioner<f32>,
     workspace: Workspace<f32>,
-    /// The power of two. `m` is M times it, so that `a0 M` is `m` times `a0/unit`.
+    /// This power of two. `m` is `unit M`, so that `a0 M` is `m a0/unit`.
     unit: f64,
 }
 
-/// One grid.
+/// One grid, with its problem, unknowns and memory.
 pub struct Level {
-    /// Coefficients and products.
+    /// The influence coefficients, and products by them.
     pub problem: contact::Problem,
-    /// The work of a product, relative to the finest grid.
+    /// The cost of a product, relative to one on the finest grid.
     pub work: f64,
-    /// The surfaces.
+    /// The undeformed distances and the attraction.
     pub surface: Surface,
-    /// The present unknowns.
+    /// The current iterate.
     pub now: Unknowns,
-    /// The last state from which descent can continue, [kept](Unknowns::keep).
+    /// The last iterate from which descent can continue, as [kept](Unknowns::keep).
     pub good: Unknowns,
-    /// Fields of linear solves, shared by all grids and held by the active one.
+    /// The pool of fields for linear solves. All grids share it, and the active one has it.
     pub fields: Fields<1>,
+    /// The preconditioner; `None` if the circulant has no positive inverse.
     inverse: Option<Inverse>,
-    /// The solver of frozen problems, on small grids: made when first needed.
-    pub frozen: Option<Still>,
-    /// On a large grid: most bytes of fields and of the solver of frozen problems.
+    /// The solver of frozen problems. On a small grid it is made when first needed, and kept.
+    pub frozen: Option<FrozenSolver>,
+    /// On a large grid: the largest number of bytes of the fields together with the solver of frozen problems, so far.
     at_most: usize,
 }
 
 impl Level {
-    /// A grid with these unknowns, a product on which takes `work` of one on the finest.
+    /// A grid with these unknowns. `work` is the cost of a product relative to one on the finest grid.
     pub fn new(
         (grid, coefficients): (Grid, Coefficients),
         operator: Arc<Operator<f64>>,
@@ -97,20 +99,21 @@ impl Level {
         })
     }
 
-    /// The influence of an element on itself.
+    /// The influence a0 of an element on itself.
     pub fn self_influence(&self) -> f64 {
         self.problem.self_influence()
     }
 
-    /// Measures the present unknowns. C is that of the natural map unless it `is_kept`.
+    /// Computes the residuals of the current iterate. C is first updated by the natural map, unless it `is_kept`. `wanted`: the sum of p if the
+    /// force is given.
     pub fn measure(&mut self, is_kept: bool, wanted: Option<f64>) -> Measured {
         let of_element = (self.self_influence(), self.problem.round_off());
         let is_mean_free = wanted.is_none() && self.is_mean_free();
         measure(&self.surface, &mut self.now, of_element, (is_kept, wanted, is_mean_free), &self.problem.threads)
     }
 
-    /// Whether no element touches, and none attracts at its undeformed or at its deformed distance. Bodies that are
-    /// drawn together attract each other although their undeformed distance is beyond the reach.
+    /// Whether no element is in contact, and none attracts at its undeformed or at its deformed distance. Bodies that are drawn together attract
+    /// each other although their undeformed distance is beyond the reach of the attraction.
     pub fn leaves_nothing(&self) -> bool {
         let (surface, now) = (&self.surface, &self.now);
         let distances = |i: usize| [surface.h[i] - now.approach(), surface.distance(i, now)];
@@ -123,7 +126,8 @@ impl Level {
         self.problem.coefficients.is_mean_free()
     }
 
-    /// Lowers all pressures by a constant, which has no displacement, so that the elements with the least values of the natural map leave the contact.
+    /// Lowers all pressures by a constant, so that the elements with the smallest values of the natural map leave the contact. With two periods
+    /// the constant displaces nothing.
     pub fn open(&mut self) {
         let (surface, a0, n) = (&self.surface, self.self_influence(), self.now.u.len());
         let pressing = |i: usize| {
@@ -136,13 +140,13 @@ impl Level {
         fields::map(&self.problem.threads, &mut self.now.p.field, |_, [p]| [p - by]);
     }
 
-    /// u = A p by a fresh product.
+    /// Computes u = A p by a fresh product.
     pub fn refresh(&mut self) -> Result<()> {
         let Level { problem, now, .. } = self;
         problem.displace(now.p.field.as_flattened(), now.u.as_flattened_mut())
     }
 
-    /// `z = M (a0 y)` on C, undefined outside.
+    /// Computes `z = M (a0 y)` on C. Outside, z is not meaningful.
     pub fn precondition(&mut self, y: &[[f32; 1]], z: &mut [[f32; 1]]) {
         let a0 = self.problem.self_influence();
         let (contact, threads) = (&self.now.contact, &self.problem.threads);
@@ -154,13 +158,13 @@ impl Level {
         m.apply_alone(z.as_flattened_mut(), workspace);
     }
 
-    /// Adds the products made here since the last call to those of the solve.
+    /// Adds the products that this grid has made since the last call to the count of the solve.
     pub fn count_products(&mut self, monitor: &mut Monitor<'_>) {
         monitor.count_products(self.problem.take_products(), self.work);
     }
 
-    /// The solver of frozen problems with its state. A large grid makes it for one descent, in place of the fields of linear solves.
-    pub fn take_frozen(&mut self, make: MakeFrozen<'_>) -> Result<Still> {
+    /// Takes the solver of frozen problems and its state. A large grid makes them for each descent, in place of the fields of linear solves.
+    pub fn take_frozen(&mut self, make: MakeFrozen<'_>) -> Result<FrozenSolver> {
         if let Some(still) = self.frozen.take() {
             return Ok(still);
         }
@@ -169,14 +173,14 @@ impl Level {
         Ok((make(&self.problem)?, state))
     }
 
-    /// Takes the solver of frozen problems back.
-    pub fn give_frozen(&mut self, still: Still) {
+    /// Gives the solver of frozen problems back. A large grid frees it.
+    pub fn give_frozen(&mut self, still: FrozenSolver) {
         self.clear_fields(bytes_of(&still));
         self.frozen = Some(still).filter(|_| is_small(self.now.u.len()));
     }
 
-    /// Frees the fields of a large grid. `beside`: bytes held at the same time. Descent, Newton's method and Lanczos' iteration follow each
-    /// other, and none of them reads the fields of another.
+    /// Frees the fields of a large grid. `beside`: bytes of other memory in use at the same time. Descent, Newton's method and Lanczos' iteration
+    /// follow each other, and none of them reads fields of another.
     pub fn clear_fields(&mut self, beside: usize) {
         if !is_small(self.now.u.len()) {
             self.at_most = self.at_most.max(self.fields.bytes() + beside);
@@ -184,7 +188,7 @@ impl Level {
         }
     }
 
-    /// Bytes held, without [`Level::bytes_at_work`].
+    /// Bytes of the grid, without [`Level::bytes_at_work`].
     pub fn bytes(&self) -> usize {
         let inverse = self.inverse.as_ref().map_or(0, |inverse| inverse.m.bytes() + inverse.workspace.bytes());
         let surface = size_of_val(&self.surface.h[..]) + size_of_val(&self.surface.works[..]);
@@ -192,12 +196,12 @@ impl Level {
         self.problem.bytes() + inverse + surface + unknowns + self.frozen.as_ref().map_or(0, bytes_of)
     }
 
-    /// Most bytes of linear solves and of descents: one grid is active at a time.
+    /// The largest number of bytes of linear solves and of descents. Only one grid is active at a time.
     pub fn bytes_at_work(&self) -> usize {
         self.fields.bytes().max(self.at_most)
     }
 }
 
-fn bytes_of((frozen, state): &Still) -> usize {
+fn bytes_of((frozen, state): &FrozenSolver) -> usize {
     frozen.bytes() + state.bytes()
 }

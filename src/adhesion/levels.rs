@@ -1,4 +1,4 @@
-//! The grids of a nested iteration. Coarser grids keep the work of adhesion and get a longer range that their elements resolve.
+//! The grids of nested iteration. Coarser grids have the same work of adhesion, and a longer range that their elements resolve.
 
 use std::sync::Arc;
 
@@ -14,26 +14,27 @@ use crate::methods::projected_cg::shift_to_mean;
 use crate::operator::Operator;
 use crate::threads::Threads;
 
-/// The coarsest grid has at most this many elements in each direction.
+/// The largest number of elements of the coarsest grid in each direction.
 const COARSEST: usize = 31;
+/// The name of the memory of surfaces in messages.
 const MEMORY: &str = "the surfaces of adhesion";
-/// `kappa = s a0` of the shortest range that elements resolve.
+/// The kappa, the largest `s a0`, of the shortest range that elements resolve.
 pub const RESOLVED_KAPPA: f64 = 0.4;
 
-/// The inputs of a scene for all grids, except undeformed distances.
+/// The attraction of a scene, for all grids.
 #[derive(Clone, Copy, Debug)]
 pub struct Surfaces<'a> {
-    /// The law of attraction by distance.
+    /// The law of attraction.
     pub law: Law,
-    /// rho. 0 means the shortest range that the elements resolve.
+    /// The range rho; 0 means the shortest one that the elements resolve.
     pub range: f64,
-    /// w, if it is uniform.
+    /// The work of adhesion w, if it is uniform.
     pub work: f64,
-    /// w of each element.
+    /// The work of adhesion w of each element. `None`: it is uniform.
     pub works: Option<&'a [f64]>,
 }
 
-/// The grids, finest first. The finest has the given operator.
+/// Sets up the grids, finest first. The finest one has the given operator, and its arrays are lent later.
 pub fn levels(
     grid: Grid,
     coefficients: &Coefficients,
@@ -57,7 +58,8 @@ pub fn levels(
     Ok(levels)
 }
 
-/// Copies the surfaces of a scene to all grids. The finest grid has its undeformed distances already.
+/// Copies the attraction of a scene to all grids, and restricts works of adhesion and undeformed distances to the coarser grids. The finest grid
+/// has its undeformed distances already.
 pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
     let Surfaces { law, work, works, .. } = given;
     let largest = works.map_or(work, |works| works.iter().copied().fold(0.0, f64::max));
@@ -65,11 +67,11 @@ pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
         let (finer, coarser) = levels.split_at_mut(l);
         let Level { problem, surface, .. } = &mut coarser[0];
         let (n, a0) = (problem.grid.len(), problem.self_influence());
-        let carried = law.shortest_range(largest, a0, RESOLVED_KAPPA);
+        let resolved = law.shortest_range(largest, a0, RESOLVED_KAPPA);
         let range = match finer.first() {
             None if given.range > 0.0 => given.range,
-            None => carried,
-            Some(finest) => finest.surface.attraction.range.max(carried),
+            None => resolved,
+            Some(finest) => finest.surface.attraction.range.max(resolved),
         };
         (surface.attraction, surface.work) = (Attraction { law, range }, largest);
         let has_works = works.is_some();
@@ -97,8 +99,8 @@ pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Starts from the pressures of the next coarser grid, piecewise constant, and from its approach. Displacements follow
-/// by a fresh product. The memory of linear solves passes to the finer grid.
+/// Starts from the pressures of the next coarser grid, piecewise constant, and from its approach. The displacements follow by a fresh product.
+/// The memory of linear solves passes to the finer grid.
 pub fn prolong(coarse: &mut Level, fine: &mut Level) -> Result<()> {
     fine.fields = std::mem::take(&mut coarse.fields);
     fine.fields.leave_smaller(fine.now.u.len());

@@ -1,13 +1,13 @@
-//! Majorise-minimise: freezes the attraction, solves the contact problem, and repeats.
+//! Majorise-minimise iteration, called descent: each step freezes the attraction sigma and solves the contact problem that results.
 //!
 //! ```text
 //! sigma_k = sigma(e);    e = h - approach - A sigma_k + A q,  q >= 0,  e >= 0,  q e = 0;    p = q - sigma_k
 //! ```
 //!
-//! W is convex, so that the energy with sigma_k lies above that of the law and touches it at the last state: every step lowers the energy for any
-//! attraction.
+//! W is convex. Therefore the energy with sigma_k is an upper bound of the energy, and equals it at the last iterate, so that each step lowers
+//! the energy, however strong the attraction is.
 
-use super::level::{Level, MakeFrozen, Still};
+use super::level::{FrozenSolver, Level, MakeFrozen};
 use super::newton::{End, Goal};
 use super::unknowns::Measured;
 use crate::contact::Freshness;
@@ -16,48 +16,49 @@ use crate::methods::fields::{self, BLOCK};
 use crate::progress::{Monitor, Outcome};
 use crate::scene::Load;
 
-/// Tolerance of a frozen problem, relative to the error of the attraction, at most `LARGEST_TOLERANCE`.
+/// The tolerance of a frozen problem, relative to the residual of the law; at most LARGEST_TOLERANCE.
 const TOLERANCE_PER_ERROR: f64 = 0.05;
 const LARGEST_TOLERANCE: f64 = 1e-2;
-/// Least tolerance of a frozen problem, relative to the goal's.
+/// The smallest tolerance of a frozen problem, relative to the goal's.
 const TOLERANCE_PER_GOAL: f64 = 0.5;
 
 /// How descent ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Descent {
-    /// By one of the ends of Newton's method.
+    /// As Newton's method may end: solved, failed or interrupted.
     By(End),
-    /// The force pulls more than all attraction holds: the bodies part.
+    /// The given force pulls more than the frozen attraction holds: the bodies part.
     Parted,
 }
 
-/// How descent proceeds.
+/// The options of descent.
 #[derive(Clone, Copy)]
 pub struct Steps<'a> {
-    /// Most steps.
+    /// The largest number of steps.
     pub most: u64,
-    /// Whether the first step has no attraction.
-    pub from_none: bool,
+    /// Whether the first step solves the contact problem without attraction.
+    pub starts_without_attraction: bool,
     /// Makes the solver of frozen problems.
     pub make: MakeFrozen<'a>,
 }
 
-/// Descends from the level's state. Its contact area and u may be inconsistent with p.
+/// Descends from the current iterate of the level. The contact area and u need not be consistent with p.
 pub fn descend(
     level: &mut Level,
     goal: Goal,
     steps: Steps<'_>,
     monitor: &mut Monitor<'_>,
 ) -> Result<(Descent, Measured)> {
-    let mut still = level.take_frozen(steps.make)?;
-    let ended = descend_with(level, &mut still, goal, steps, monitor);
-    level.give_frozen(still);
+    let mut frozen_solver = level.take_frozen(steps.make)?;
+    let ended = descend_with(level, &mut frozen_solver, goal, steps, monitor);
+    level.give_frozen(frozen_solver);
     ended
 }
 
+/// Descends with this solver of frozen problems.
 fn descend_with(
     level: &mut Level,
-    still: &mut Still,
+    frozen_solver: &mut FrozenSolver,
     goal: Goal,
     steps: Steps<'_>,
     monitor: &mut Monitor<'_>,
@@ -69,7 +70,8 @@ fn descend_with(
         }
         let off = if step == 0 { LARGEST_TOLERANCE / TOLERANCE_PER_ERROR } else { measured.law };
         let tolerance = (TOLERANCE_PER_ERROR * off).min(LARGEST_TOLERANCE).max(TOLERANCE_PER_GOAL * goal.tolerance);
-        match one(level, still, (goal, tolerance), steps.from_none && step == 0, monitor)? {
+        match take_step(level, frozen_solver, (goal, tolerance), steps.starts_without_attraction && step == 0, monitor)?
+        {
             Step::Parted => return Ok((Descent::Parted, measured)),
             Step::Unsolved => return Ok((Descent::By(End::Failed), measured)),
             Step::Solved => {}
@@ -91,20 +93,20 @@ fn descend_with(
 
 /// How a step ended.
 enum Step {
-    /// The next state, to the tolerance or as near as the cycles allow.
+    /// The level has the next iterate, to the tolerance or as near as the cycles allow.
     Solved,
-    /// The contact problem failed without a single cycle, and would fail again.
+    /// The contact problem failed without a cycle, and would fail again.
     Unsolved,
-    /// No pressure carries the force.
+    /// No contact pressures carry the given force.
     Parted,
 }
 
-/// One step.
-fn one(
+/// Makes one step. `tolerance`: that of the contact problem.
+fn take_step(
     level: &mut Level,
-    (frozen, state): &mut Still,
+    (frozen, state): &mut FrozenSolver,
     (goal, tolerance): (Goal, f64),
-    from_none: bool,
+    starts_without_attraction: bool,
     monitor: &mut Monitor<'_>,
 ) -> Result<Step> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
@@ -112,7 +114,7 @@ fn one(
     let (mut attraction, mut product) = (fields.take(n)?, fields.take(n)?);
     let (surface, now) = (&level.surface, &level.now);
     fields::fill(&threads, &mut attraction, |i| {
-        [if from_none { 0.0 } else { surface.traction(i, surface.distance(i, now)) }]
+        [if starts_without_attraction { 0.0 } else { surface.traction(i, surface.distance(i, now)) }]
     });
     let [held] = fields::sum(&threads, n, |i| attraction[i]);
     let problem = &mut level.problem;
@@ -135,13 +137,13 @@ fn one(
         Some(wanted) => Load::Force((wanted + held) * area),
     };
     state.u_is = Freshness::Stale;
-    let carried = !matches!(state.load, Load::Force(force) if !(force > 0.0));
+    let is_carried = !matches!(state.load, Load::Force(force) if !(force > 0.0));
     let mut step = Step::Parted;
-    if carried {
+    if is_carried {
         let cycles = monitor.count.cycles;
         let left = goal.most.saturating_sub(cycles).max(1);
         let outcome = frozen.solve(problem, state, (tolerance, left), monitor)?;
-        log::debug!("the contact problem of a still attraction: {outcome:?}");
+        log::debug!("the contact problem of a frozen_solver attraction: {outcome:?}");
         let failed = outcome == Outcome::Stagnated && monitor.count.cycles == cycles;
         step = if failed { Step::Unsolved } else { Step::Solved };
         fields::fill(&threads, &mut level.now.p.field, |i| [state.p[i] - attraction[i][0]]);

@@ -1,22 +1,28 @@
-//! Semismooth Newton on total pressures. Each step predicts C by the natural map `q - e/a0 > 0` and linearises the rest:
+//! Semismooth Newton's method for the total pressures. Each step predicts C by the natural map `q - e/a0 > 0`, and linearises the remaining
+//! conditions:
 //!
 //! ```text
 //! in C  e = 0,      outside  p = -sigma(e)
 //! ```
 //!
-//! Far from the solution bold and firm steps linearise the exponential law at the mean of e and of the distance whose attraction is -p: at e alone
-//! the tangent of a steep law overshoots. There is no line search: if steps fail, descent follows ([`robust`](super::robust)).
+//! There are three kinds of steps ([`Pace`]):
 //!
-//! A cautious step uses a part of the slope of the attraction in three cases: far from the solution, while elements enter or leave the contact, and
-//! after a full step has failed. It lies between a Newton step and a step of descent, which uses no slope. Such steps seldom jump from one state of
-//! an element to another. Example: a sphere with nearly unstable elements (Tabor's parameter 3, 64 x 64 elements, kappa 0.92) is pulled off in steps
-//! of 0.1. Bold steps fail at 18 of 20 of these, cautious ones at 9, with half the number of steps.
+//! * Bold steps use the whole slope of the attraction. Far from the solution they linearise the exponential law at the mean of two distances: e,
+//!   and the one at which the attraction is -p. Linearised at e alone, a steep law overshoots.
+//! * Firm steps are bold ones whose linear systems are solved to smaller tolerances, and of which more are allowed.
+//! * Cautious steps use only a part of the slope in three cases: far from the solution, while elements enter or leave the contact, and after a
+//!   step with the whole slope has failed. Such a step lies between a Newton step and a step of descent, which uses no slope. It seldom moves an
+//!   element from one of its states to another. Example: a sphere with nearly unstable elements (Tabor's parameter 3, 64 x 64 elements, kappa
+//!   0.92) is pulled off in load steps of 0.1. Bold steps fail in 18 of 20 load steps, cautious ones in 9, with half the number of Newton steps.
 //!
-//! With two periods waves do not change the mean distance. As long as the approach is below it, not all elements touch: if all touch by the
-//! natural map, pressures are lowered until some leave.
+//! There is no line search. If the steps fail, descent follows ([`robust`](super::robust)).
 //!
-//! A warm start keeps the last contact area in its first step. A change of the approach raises e in all of C, and the natural map, based on the
-//! compliance of one element, would release the inside.
+//!
+//! With two periods pressure waves do not change the mean distance. As long as the approach is below this mean, not all elements are in contact.
+//! If the natural map still puts all of them in contact, the pressures are lowered until some leave.
+//!
+//! A solve that starts from an earlier state keeps the contact area of that state in its first step. A change of the approach changes e in all of
+//! C, and the natural map, which only knows the compliance of one element, would release the inside.
 
 use super::law::Law;
 use super::level::Level;
@@ -28,69 +34,72 @@ use crate::methods::fields;
 use crate::operator::fft::Real;
 use crate::progress::Monitor;
 
-/// Most steps.
+/// The largest number of bold steps, and of cautious ones far from the solution.
 const MOST_STEPS: u64 = 20;
-/// Above this residual a step is far from the solution. Its linear system is solved to `FAR_TOLERANCE`, that of a step near the solution to
-/// `CLOSE_TOLERANCE`. Firm steps have `FIRM_TOLERANCES` for both.
+/// Above this residual a step is far from the solution. Its linear system is solved to the relative tolerance FAR_TOLERANCE, that of a step near
+/// the solution to CLOSE_TOLERANCE. Firm steps have FIRM_TOLERANCES instead.
 const CLOSE_RESIDUAL: f64 = 2e-2;
 const FAR_TOLERANCE: f64 = 0.2;
 const CLOSE_TOLERANCE: f64 = 0.1;
-/// Largest distance of the place of linearisation from e, in ranges.
+/// The largest distance of the place of linearisation from e, in ranges, on either side before the mean is taken.
 const MOST_RANGES_FROM_E: f64 = 3.0;
-/// Most directions of a linear solve: systems that take more are nearly singular. Grids that are not small have `IN_MEMORY`, those of more than
-/// `LARGE_GRID` elements `FIRST_DIRECTIONS`, doubled after each solve for which they were too few.
+/// The largest number of search directions of a linear solve on a small grid. A system that takes more is nearly singular. Larger grids have
+/// IN_MEMORY directions. Grids of more than LARGE_GRID elements begin with FIRST_DIRECTIONS, and double this number after each solve for which it
+/// was too small, up to IN_MEMORY.
 pub const MOST_DIRECTIONS: usize = 30;
 pub const IN_MEMORY: usize = 2 * KEPT_PRODUCTS;
 const LARGE_GRID: usize = 1 << 16;
 const FIRST_DIRECTIONS: usize = 6;
-/// The part of the slope in a cautious step.
+/// The part of the slope of the attraction that a cautious step uses.
 const CAUTIOUS_SLOPE: f64 = 0.7;
-/// Rise of the residual at which a full step counts as failed: steps between both edges of a smeared law may recur for ever.
+/// The rise of the residual from which a step with the whole slope counts as failed. Without this test, steps between both edges of a smeared law
+/// may recur for ever.
 const FAILED_RISE: f64 = 2.0;
-/// The next full step is tried below this part of the residual of the failed one.
+/// After a step with the whole slope has failed, the next one is tried when the residual is below this fraction of the residual before the failed
+/// step.
 const FULL_STEP_AGAIN: f64 = 0.1;
-/// Most cautious steps below [`CLOSE_RESIDUAL`]: next to a fold of the branch they converge slowly.
+/// The largest number of cautious steps near the solution. Next to a fold of the branch they converge slowly.
 const MOST_CAUTIOUS: u64 = 30;
-/// Most firm steps, and the relative tolerances of their linear systems far from the solution and near it.
+/// The largest number of firm steps, and the relative tolerances of their linear systems far from the solution and near it.
 const MOST_FIRM: u64 = 60;
 const FIRM_TOLERANCES: [f64; 2] = [0.1, 0.03];
-/// Largest s a0, which is stored in single precision.
+/// The largest s a0. The numbers are stored in single precision.
 const LARGEST_STIFFNESS: f64 = 1e30;
-/// Steps have failed if the residual is not below this.
+/// The method has failed if a residual is not below this.
 const LOST_RESIDUAL: f64 = 1e12;
 
-/// How a loop ended.
+/// How a sequence of steps ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// The measures are met, with a fresh product if required.
+    /// All residuals are within the tolerance, with a fresh product if the goal requires it.
     Solved,
-    /// Steps make no more progress.
+    /// The largest number of steps is reached, or the residual is too large.
     Failed,
     /// The caller cancelled, or no cycle is left.
     Interrupted,
 }
 
-/// How steps are taken.
+/// The kind of Newton steps (see the module).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// With the whole slope of the attraction.
     Bold,
-    /// With a part of it, until the contact area is constant.
+    /// With a part of the slope, until the contact area is constant.
     Cautious,
     /// As bold ones, but with linear systems solved to smaller tolerances, and more steps.
     Firm,
 }
 
-/// The goal of a loop on one grid.
+/// The goal of a solve on one grid.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
-    /// The tolerance of the worst measure.
+    /// The tolerance of the largest residual.
     pub tolerance: f64,
-    /// The sum of p, if the force is given.
+    /// The wanted sum of p. `None`: the approach is given.
     pub wanted: Option<f64>,
-    /// Whether a fresh product has to confirm the measures.
+    /// Whether a fresh product has to confirm the residuals.
     pub certified: bool,
-    /// Most cycles on the finest grid.
+    /// The largest number of cycles on this grid.
     pub most: u64,
     /// The kind of Newton steps.
     pub pace: Pace,
@@ -108,7 +117,7 @@ impl Goal {
     }
 }
 
-/// Iterates from the level's state. `keeps`: the first step keeps its contact area.
+/// Iterates from the current iterate of the level. `keeps`: the first step keeps the contact area.
 pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<'_>) -> Result<(End, Measured)> {
     let mut measured = Measured::default();
     let (mut last, mut whole_below) = (f64::INFINITY, f64::INFINITY);
@@ -162,7 +171,7 @@ pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<
     Ok((End::Failed, measured))
 }
 
-/// Makes one step, with at most `most` directions, far from the solution or near it. Returns whether these were enough.
+/// Makes one step, far from the solution or near it, with at most `most` search directions. Returns whether these were enough.
 fn take_step(level: &mut Level, Goal { wanted, pace, .. }: Goal, is_far: bool, most: usize) -> Result<bool> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
     let mut fields = std::mem::take(&mut level.fields);
@@ -186,25 +195,29 @@ fn take_step(level: &mut Level, Goal { wanted, pace, .. }: Goal, is_far: bool, m
     Ok(is_enough)
 }
 
-/// s a0 outside the present contact area; `place(i, e)` is the distance at which element i is linearised.
-pub fn stiffnesses<T: Real>(level: &Level, place: impl Fn(usize, f64) -> f64 + Sync + Send, stiffness: &mut [[T; 1]]) {
+/// Computes s a0 outside the current contact area; 0 inside. `linearised_at(i, e)` is the distance at which element i is linearised.
+pub fn stiffnesses<T: Real>(
+    level: &Level,
+    linearised_at: impl Fn(usize, f64) -> f64 + Sync + Send,
+    stiffness: &mut [[T; 1]],
+) {
     let (surface, now, a0) = (&level.surface, &level.now, level.self_influence());
     fields::fill(&level.problem.threads, stiffness, |i| {
         let e = surface.distance(i, now);
         if now.contact[i] || !e.is_finite() {
             return [T::zero()];
         }
-        [T::of((surface.attraction.stiffness(surface.work_at(i), place(i, e)) * a0).min(LARGEST_STIFFNESS))]
+        [T::of((surface.attraction.stiffness(surface.work_at(i), linearised_at(i, e)) * a0).min(LARGEST_STIFFNESS))]
     });
 }
 
-/// s and the right-hand side for the present contact area.
+/// Computes s a0 and the right-hand side for the current contact area.
 fn linearise(level: &Level, pace: Pace, is_far: bool, stiffness: &mut [Short], right: &mut [[f64; 1]]) {
     let (surface, now, a0, threads) = (&level.surface, &level.now, level.self_influence(), &level.problem.threads);
     let range = surface.attraction.range;
     let at_mean = is_far && pace != Pace::Cautious && surface.attraction.law == Law::Exponential;
     // The distance at which element i is linearised.
-    let place = |i: usize, e: f64| {
+    let linearised_at = |i: usize, e: f64| {
         let e = e.max(0.0);
         match at_mean {
             false => e,
@@ -215,7 +228,7 @@ fn linearise(level: &Level, pace: Pace, is_far: bool, stiffness: &mut [Short], r
             }
         }
     };
-    stiffnesses(level, place, stiffness);
+    stiffnesses(level, linearised_at, stiffness);
     if is_far && pace == Pace::Cautious {
         fields::scale(threads, stiffness, CAUTIOUS_SLOPE);
     }
@@ -228,7 +241,7 @@ fn linearise(level: &Level, pace: Pace, is_far: bool, stiffness: &mut [Short], r
         if !e.is_finite() {
             return [-p];
         }
-        let at = place(i, e);
+        let at = linearised_at(i, e);
         [-(p + surface.traction(i, at) - f64::from(stiffness[i][0]) / a0 * (e - at))]
     });
 }

@@ -1,5 +1,5 @@
-//! Linear systems without a border, solved to small residuals. On large grids GMRES restarts with the remaining residual as the right-hand side, so that
-//! few directions are kept at a time.
+//! Solves linear systems at a fixed approach to small residuals. On large grids GMRES restarts with the remaining residual as the right-hand
+//! side, so that few search directions are kept at a time.
 
 use super::system::{Linearised, Short};
 use super::unknowns::is_small;
@@ -7,25 +7,27 @@ use crate::error::Result;
 use crate::methods::fgmres::{self, Bordered, Until};
 use crate::methods::fields::{self, Fields};
 
-/// Factor on the target for round-off: a system with a residual of at most this times the target counts as solved.
+/// A system counts as solved if its residual is at most this factor times the target. The factor allows for round-off.
 const SLACK: f64 = 1.0 + 1e-6;
 
 /// The accuracy and the cost of a solve.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// The target: the relative residual at which a solve ends.
+    /// The relative residual at which the solve ends.
     pub part: f64,
-    /// Most directions.
+    /// The largest number of search directions.
     pub most: usize,
-    /// Most kept directions on a large grid, after which the solve restarts.
+    /// The number of search directions after which a solve on a large grid restarts.
     pub at_once: usize,
 }
 
-/// A solution, and its product with A in units of a0.
+/// A solution of a linear system.
 pub struct Solution {
+    /// The pressures y.
     pub y: Vec<Short>,
+    /// A y, in units of a0.
     pub product: Vec<Short>,
-    /// Whether the target is reached.
+    /// Whether the relative residual is reached.
     pub is_solved: bool,
 }
 

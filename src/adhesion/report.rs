@@ -1,4 +1,4 @@
-//! The results of adhesion and their measures.
+//! The results of a solve with adhesion, and the ledger row of a grid.
 
 use super::level::Level;
 use super::unknowns::{energies, Measured};
@@ -9,41 +9,43 @@ use crate::progress::{DiscretisationError, Measures, Monitor};
 /// The results of a solve with adhesion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
-    /// The sum of contact pressures q dx dy.
+    /// The repulsive force: the sum of contact pressures q dx dy.
     pub repulsive_force: f64,
-    /// The sum of -sigma dx dy: negative.
+    /// The adhesive force: the sum of -sigma dx dy, negative.
     pub adhesive_force: f64,
-    /// The sum of 1/2 p u dx dy.
+    /// The elastic energy: the sum of 1/2 p u dx dy.
     pub elastic_energy: f64,
-    /// The sum of -W(e) dx dy: negative.
+    /// The adhesive energy: the sum of -W(e) dx dy, negative.
     pub adhesive_energy: f64,
     /// `||p + sigma(e)||` outside C, relative to `||p||`, or to 1e-3 of `||q||` in C if that is larger.
     pub law_residual: f64,
-    /// The range rho used.
+    /// The range rho of the attraction on the finest grid.
     pub range: f64,
-    /// kappa: the largest stiffness of the attraction times an element's influence on itself. Above 1/2 elements are too coarse.
+    /// kappa, the largest stiffness of the attraction times an element's influence on itself. Above [`RESOLVED`] elements are too coarse.
     pub resolution: f64,
-    /// The part of the sum of sigma on the border of the grid, in directions without a period.
+    /// The part of the sum of sigma that acts on the outermost elements of the grid, except in periodic directions.
     pub border_share: f64,
-    /// dF/dapproach; none: not requested.
+    /// dF/dapproach. `None`: it was not requested, or the solve failed or was cancelled.
     pub stiffness: Option<f64>,
-    /// `1 - lambda` (module `stability`): positive in a stable state, 0 at a snap; none: not requested.
+    /// The stability margin `1 - lambda` (module `stability`): positive in a stable state, 0 at a snap. `None`: it was not requested, or the
+    /// solve failed or was cancelled.
     pub stability: Option<f64>,
-    /// Whether the bodies have snapped: the state before could not be followed, and more than a quarter of the contact differs.
+    /// Whether the bodies have snapped: the branch of the initial state could not be followed, and more than a quarter of the elements in contact
+    /// has changed.
     pub jumped: bool,
-    /// Whether no cycle was left before a state with the prescribed pull was found. The state is then that of the strongest pull found.
+    /// Whether the cycles were used up before a state under the prescribed pull was found. Then the state is that of the strongest pull found.
     pub is_short: bool,
 }
 
-/// kappa up to which elements resolve the attraction.
+/// The kappa up to which elements resolve the attraction.
 pub const RESOLVED: f64 = 0.5;
-/// kappa above which a single element is unstable.
+/// The kappa above which a single element is unstable.
 pub const UNSTABLE_KAPPA: f64 = 1.0;
-/// Largest part of the attraction on the border of a grid that contains it.
+/// The largest part of the attraction on the outermost elements if the grid is large enough.
 pub const LARGEST_BORDER_SHARE: f64 = 1e-3;
 
 impl Report {
-    /// The report of a grid's state.
+    /// The report of the state of a grid, without what a request adds.
     pub(super) fn of(level: &Level, measured: &Measured) -> Report {
         let (surface, now, grid) = (&level.surface, &level.now, level.problem.grid);
         let threads = &level.problem.threads;
@@ -72,7 +74,7 @@ impl Report {
         }
     }
 
-    /// Bits of [`DiscretisationError`] for elements that are too coarse or a grid that is too small.
+    /// The bits of [`DiscretisationError`] that are set if elements are too coarse or the grid is too small.
     pub fn untrusted(&self) -> u32 {
         let all = DiscretisationError::FORCE | DiscretisationError::MAX_PRESSURE | DiscretisationError::PRESSURE;
         if self.resolution > RESOLVED || self.border_share > LARGEST_BORDER_SHARE {
@@ -82,7 +84,7 @@ impl Report {
         }
     }
 
-    /// Advice if elements are too coarse.
+    /// A message with advice if elements are too coarse.
     pub fn advice(&self) -> Option<String> {
         (self.resolution > RESOLVED).then(|| {
             let factor = self.resolution / RESOLVED;
@@ -95,7 +97,7 @@ impl Report {
     }
 }
 
-/// The pressures of contact q = p + sigma on C, 0 outside.
+/// The contact pressure q = p + sigma of element i in C, 0 outside.
 fn contact_pressure(level: &Level, i: usize) -> f64 {
     let (surface, now) = (&level.surface, &level.now);
     if now.contact[i] {
@@ -105,11 +107,12 @@ fn contact_pressure(level: &Level, i: usize) -> f64 {
     }
 }
 
-/// The measures of a grid.
+/// The results of a grid for the ledger, from its state and residuals.
 pub fn measures(level: &Level, measured: &Measured) -> Measures {
     let (surface, now, grid) = (&level.surface, &level.now, level.problem.grid);
     let threads = &level.problem.threads;
     let a0 = level.self_influence();
+    // Sums over the elements of |q e|, |p u| and a0 q^2.
     let [work, elastic, own] = fields::sum(threads, now.u.len(), |i| {
         let e = surface.distance(i, now).abs();
         let q = contact_pressure(level, i).abs();

@@ -1,5 +1,6 @@
-//! One grid: Newton's method, then in cautious steps if it fails. If these fail, or end uphill or on a saddle, some steps of descent from the last
-//! good state follow, then Newton's method again, in bold steps, and then in firm and cautious ones in turns.
+//! Solves one grid. First comes Newton's method, and if it fails, Newton's method in cautious steps. If these fail, too, or end at a larger
+//! energy or at a saddle, some steps of descent follow, from the last iterate from which descent can continue. Then comes Newton's method again:
+//! first in bold steps, later in firm and cautious ones in turns.
 
 use super::level::{Level, MakeFrozen};
 use super::majorise::{descend, Descent, Steps};
@@ -9,49 +10,49 @@ use super::unknowns::{energies, Measured};
 use crate::error::Result;
 use crate::progress::Monitor;
 
-/// Most trials of Newton's method.
+/// The largest number of trials of Newton's method.
 const NEWTON_TRIALS: u32 = 12;
-/// Steps of descent between two trials.
+/// The number of steps of descent between two trials.
 pub const DESCENT_STEPS: u64 = 5;
-/// Relative increase of energy that counts as uphill.
+/// The relative increase of the energy from which an end counts as uphill.
 const UPHILL: f64 = 1e-6;
-/// Grids of more than [`CHEAP`] elements are tested if Newton's method takes more than FEW_STEPS steps: they start near
-/// the equilibrium of a coarser grid or of the last load, and few steps from a stable equilibrium end at a stable one.
+/// Grids of more than [`CHEAP`] elements are tested for a saddle only if Newton's method takes more than FEW_STEPS steps. They start near the
+/// equilibrium of a coarser grid or of the last load, and few steps from a stable equilibrium end at a stable one.
 const FEW_STEPS: u64 = 6;
 
-/// The end of a solve of a grid.
+/// How the solve of a grid ended.
 #[derive(Clone, Copy, Debug)]
 pub struct Ended {
-    /// Why it ended.
+    /// How the last method ended.
     pub end: Descent,
-    /// The measures of the conditions.
+    /// The residuals of the conditions.
     pub measured: Measured,
-    /// Whether Newton's method failed at first, so that the starting state was not followed.
+    /// Whether Newton's method failed at first, so that the solve did not follow the branch of the starting state.
     pub is_lost: bool,
 }
 
 impl Ended {
-    /// Whether it is an equilibrium of bodies in contact.
+    /// Whether the solve ended at an equilibrium of bodies in contact.
     pub fn is_in_contact(&self) -> bool {
         self.end == Descent::By(End::Solved) && self.measured.count > 0
     }
 }
 
-/// The energy that a stable equilibrium minimises, per area of an element: elastic energy less the remaining work of the attraction, less the work of
-/// a given force.
+/// The energy that a stable equilibrium minimises, per area of an element: the elastic energy, less the remaining work of the attraction, less
+/// the work of a given force.
 pub fn energy(level: &Level, wanted: Option<f64>) -> f64 {
     let [elastic, adhesive] = energies(&level.surface, &level.now, &level.problem.threads);
     elastic - adhesive - wanted.map_or(0.0, |wanted| wanted * level.now.approach())
 }
 
-/// Whether Newton's method ended at an equilibrium that does not minimise the energy at a given approach. With a given force the end of the whole
-/// solve tests this.
+/// Whether Newton's method ended at an equilibrium that does not minimise the energy at a given approach. For a given force the search for the
+/// state tests this at its end.
 fn is_saddle(level: &mut Level, goal: Goal, is_long: bool, monitor: &mut Monitor<'_>) -> Result<bool> {
     let is_asked = level.now.u.len() <= CHEAP || goal.certified && is_long;
     Ok(goal.wanted.is_none() && is_asked && !is_stable(level, false, monitor)?)
 }
 
-/// The steps of Newton's method in each round. If bold steps cycle, cautious ones may not, and conversely. Firm steps cost more. They finish most
+/// The kind of Newton steps in each trial. If bold steps cycle, cautious ones may not, and conversely. Firm steps cost more, but finish most
 /// avalanches, in which the edge of the contact moves from element to element.
 fn pace_of(round: u32, first: Pace) -> Pace {
     match round {
@@ -62,7 +63,7 @@ fn pace_of(round: u32, first: Pace) -> Pace {
     }
 }
 
-/// Solves a grid from its state. `keeps`: the first Newton step keeps the contact area.
+/// Solves a grid from its current iterate. `keeps`: the first Newton step keeps the contact area.
 pub fn solve(
     level: &mut Level,
     goal: Goal,
@@ -91,11 +92,11 @@ pub fn solve(
             level.refresh()?;
         }
         if round == 0 && pace == Pace::Bold && end == End::Failed {
-            // Cautious steps are tried before descent, which takes more memory.
+            // Cautious steps come before descent, because descent takes more memory.
             continue;
         }
         has_descended = true;
-        let steps = Steps { most: DESCENT_STEPS, from_none: false, make };
+        let steps = Steps { most: DESCENT_STEPS, starts_without_attraction: false, make };
         let (end, measured) = descend(level, goal, steps, monitor)?;
         if end != Descent::By(End::Failed) {
             ended = Some((end, measured));
@@ -107,8 +108,8 @@ pub fn solve(
     level.good = good;
     let (end, measured) = match ended {
         Some(ended) => ended,
-        // The remaining cycles are descent.
-        None => descend(level, goal, Steps { most: goal.most, from_none: false, make }, monitor)?,
+        // All remaining cycles are spent on descent.
+        None => descend(level, goal, Steps { most: goal.most, starts_without_attraction: false, make }, monitor)?,
     };
     Ok(Ended { end, measured, is_lost })
 }

@@ -1,4 +1,4 @@
-//! The whole solve, and its result.
+//! The solver of scenes with adhesion: a whole solve, from the request to the report.
 
 use std::sync::Arc;
 
@@ -7,14 +7,14 @@ use super::level::{Level, MakeFrozen};
 use super::levels::{levels, take_surfaces};
 use super::majorise::Descent;
 use super::newton::{newton, End, Goal, Pace};
-use super::place::Walk;
+use super::path::count_contact;
 use super::report::{close_grid, Report};
-use super::request::{Request, State};
+use super::request::{InitialState, Request};
 use super::robust;
 use super::split::Split;
 use super::stability::stability;
+use super::states::PathEnd;
 use super::tangent::stiffness_of_contact;
-use super::way::count_contact;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -24,16 +24,18 @@ use crate::progress::{Monitor, Outcome};
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// If Newton's method could not follow a state, the bodies have snapped if more than this fraction of their contact has changed.
+/// If Newton's method could not follow the initial state, the bodies count as snapped if more than this fraction of the elements in contact has
+/// changed.
 const SNAPPED: f64 = 0.25;
 
-/// Grids and memory for many solves on one grid.
+/// The grids, operators and memory for many solves on one grid.
 pub struct Solver {
+    /// The grids, finest first.
     levels: Vec<Level>,
 }
 
 impl Solver {
-    /// A solver on a grid, with its coefficients and their operator.
+    /// A solver on a grid, with the influence coefficients and the operator of this grid.
     pub fn new(
         grid: Grid,
         coefficients: &Coefficients,
@@ -43,38 +45,39 @@ impl Solver {
         Ok(Solver { levels: levels(grid, coefficients, operator, threads)? })
     }
 
-    /// The finest grid, with the solution.
+    /// The finest grid. After a solve it holds the solution.
     pub fn finest(&self) -> &Level {
         &self.levels[0]
     }
 
-    /// Takes the arrays of the next solve: undeformed distances, and pressures and displacements with any values.
+    /// Takes the arrays of the next solve: undeformed distances, pressures and displacements. The pressures are read only if an initial state
+    /// refers to them; the displacements may have any values.
     pub fn lend(&mut self, [h, p, u]: [Vec<f64>; 3]) {
-        // `collect` reuses their memory.
+        // `collect` reuses the memory of the arrays.
         let ones = |values: Vec<f64>| values.into_iter().map(|value| [value]).collect();
         let Level { surface, now, .. } = &mut self.levels[0];
         (surface.h, now.p.field, now.u) = (h, ones(p), ones(u));
     }
 
-    /// Returns these arrays. After a successful solve they hold the total pressures and their displacements.
+    /// Returns the lent arrays. After a successful solve they hold the undeformed distances, the total pressures, and their displacements.
     pub fn give_back(&mut self) -> [Vec<f64>; 3] {
         let Level { surface, now, .. } = &mut self.levels[0];
         let [p, u] = [&mut now.p.field, &mut now.u].map(|values| std::mem::take(values).into_flattened());
         [std::mem::take(&mut surface.h), p, u]
     }
 
-    /// The split of the total pressures of the last scene.
+    /// The law and the works of adhesion with which the total pressures of the last solve are split.
     pub fn split(&self) -> Result<Split> {
         Split::of(&self.finest().surface)
     }
 
-    /// Bytes held, without the lent arrays and the operator of the finest grid.
+    /// Bytes of the solver, without the lent arrays and the operator of the finest grid.
     pub fn bytes(&self) -> usize {
         let at_work = self.levels.iter().map(Level::bytes_at_work).max().unwrap_or(0);
         self.levels.iter().map(Level::bytes).sum::<usize>() + at_work - self.levels[0].problem.bytes_of_operator()
     }
 
-    /// Solves with the [lent](Solver::lend) arrays. The finest grid then holds the solution, with u = A p by a fresh product.
+    /// Solves with the [lent](Solver::lend) arrays. Afterwards the finest grid holds the solution, with u = A p by a fresh product.
     pub fn solve(
         &mut self,
         request: &Request<'_>,
@@ -98,7 +101,7 @@ impl Solver {
             None => (search.begin_anew(goal)?, false),
         };
         let end = match (end, request.pull_off) {
-            // If no state is found at the load, continuation starts only from bodies that are pressed together.
+            // If no state is found at the load, the search for the pull-off starts only from bodies that are pressed together.
             (Descent::By(end), true) if end != End::Interrupted => search.pull_off(goal, end == End::Solved)?,
             (end, _) => end,
         };
@@ -107,8 +110,9 @@ impl Solver {
 }
 
 impl Search<'_, '_, '_> {
-    /// Continues from a state along its branch. Returns as well whether the bodies have snapped.
-    fn go_on(&mut self, state: &State<'_>, goal: Goal) -> Result<(Descent, bool)> {
+    /// Solves from an initial state, along the branch of that state. Returns how the solve ended, and whether the bodies have snapped. If the
+    /// branch does not contain a stable state for the goal, the solve begins anew without an initial state.
+    fn go_on(&mut self, state: &InitialState<'_>, goal: Goal) -> Result<(Descent, bool)> {
         let level = &mut self.levels[0];
         if let Some(pressure) = state.pressure {
             level.now.p.field.as_flattened_mut().copy_from_slice(pressure);
@@ -127,39 +131,39 @@ impl Search<'_, '_, '_> {
             let ended = robust::solve(level, goal, (true, self.make), self.monitor)?;
             let jumped = ended.is_lost && is_snap(before, ended.measured.count);
             let settled = match goal.wanted.is_some() && ended.is_in_contact() {
-                true => self.walker(goal).settle()?,
-                false => Walk::Found,
+                true => self.continuation(goal).settle()?,
+                false => PathEnd::Found,
             };
             (ended.end, settled, jumped)
         } else {
             let (end, _) = newton(level, goal, true, self.monitor)?;
             let settled = match end {
-                End::Solved => self.walker(goal).settle()?,
-                End::Interrupted => Walk::Interrupted,
-                _ => Walk::Lost,
+                End::Solved => self.continuation(goal).settle()?,
+                End::Interrupted => PathEnd::Interrupted,
+                _ => PathEnd::Lost,
             };
             (Descent::By(end), settled, false)
         };
         match settled {
-            Walk::Found => return Ok((end, jumped)),
-            Walk::Interrupted => return Ok((Descent::By(End::Interrupted), jumped)),
+            PathEnd::Found => return Ok((end, jumped)),
+            PathEnd::Interrupted => return Ok((Descent::By(End::Interrupted), jumped)),
             _ => {}
         }
         let end = self.begin_anew(goal)?;
         Ok((end, is_snap(before, count_contact(&self.levels[0]))))
     }
 
-    /// Finds the state of the least force, from the current state if it is valid.
+    /// Finds the state of the least force (the pull-off). If `is_state`, the search also starts from the current state.
     fn pull_off(&mut self, goal: Goal, is_state: bool) -> Result<Descent> {
         let goal = Goal { wanted: None, ..goal };
-        Ok(match self.down_all_ways(goal, is_state)? {
-            Walk::Least { .. } | Walk::Found => Descent::By(End::Solved),
-            Walk::Interrupted => Descent::By(End::Interrupted),
-            Walk::Lost | Walk::Met => Descent::By(End::Failed),
+        Ok(match self.down_all_paths(goal, is_state)? {
+            PathEnd::Least { .. } | PathEnd::Found => Descent::By(End::Solved),
+            PathEnd::Interrupted => Descent::By(End::Interrupted),
+            PathEnd::Lost | PathEnd::Joined => Descent::By(End::Failed),
         })
     }
 
-    /// Computes the measures of the solution, with a fresh product unless it has one.
+    /// Computes the residuals and the report of the state at the end. A state that is not solved gets a fresh product before.
     fn conclude(
         &mut self,
         (mut end, jumped): (Descent, bool),
@@ -169,12 +173,12 @@ impl Search<'_, '_, '_> {
         let Search { levels, monitor, .. } = self;
         let (level, wanted) = (&mut levels[0], goal.wanted);
         if end == Descent::Parted && wanted == Some(0.0) {
-            // There is no attraction and no pulling force.
+            // The force is 0 and no element attracts: the solution has no pressures.
             level.now.unload(&level.problem.threads);
             end = Descent::By(End::Solved);
         }
         if end == Descent::By(End::Solved) && level.leaves_nothing() {
-            // The remaining pressures are those of earlier states.
+            // No element touches or attracts, so any remaining pressures are left over from earlier iterates.
             level.now.unload(&level.problem.threads);
         }
         if end != Descent::By(End::Solved) {
@@ -183,7 +187,7 @@ impl Search<'_, '_, '_> {
         }
         let mut measured = level.measure(false, wanted);
         if request.pull_off {
-            // The search only begins at the load, so no force is missing.
+            // The search for the pull-off only starts at the load, so that the force of the load is not missing.
             measured.force = 0.0;
         }
         let mut report = Report::of(level, &measured);
@@ -211,7 +215,7 @@ impl Search<'_, '_, '_> {
     }
 }
 
-/// Sets the approach at which the mean distance of the elements in contact is 0, if there are any. Given pressures have no approach of their own.
+/// Sets the approach such that the mean distance of the elements in contact is 0, if there are any. Given pressures come without an approach.
 fn approach_contact(level: &mut Level) {
     let Level { surface, now, problem, .. } = level;
     let (n, contact) = (now.contact.len(), &now.contact);
@@ -222,7 +226,7 @@ fn approach_contact(level: &mut Level) {
     }
 }
 
-/// Whether the number of elements in contact changes by more than [`SNAPPED`] of it.
+/// Whether the number of elements in contact has changed by more than the fraction [`SNAPPED`].
 fn is_snap(before: usize, now: usize) -> bool {
     before.abs_diff(now) as f64 > SNAPPED * before.max(now) as f64
 }

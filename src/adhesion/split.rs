@@ -1,16 +1,16 @@
-//! The total pressures of a result, split into contact pressures and attraction.
+//! Splits the total pressures of a result into contact pressures and attraction.
 
 use super::unknowns::Surface;
 use crate::contact::State;
 use crate::error::Result;
 use crate::memory::copied;
 
-/// The law and the works of adhesion of a result. They stay when the handle later gets another scene or other
-/// coefficients.
+/// The law and the works of adhesion of a result, with which its total pressures are split. This copy stays valid when the handle gets another
+/// scene or other coefficients.
 pub struct Split(Surface);
 
 impl Split {
-    /// The split of a solution for these surfaces.
+    /// Copies the law and the works of adhesion of these surfaces.
     pub fn of(surface: &Surface) -> Result<Split> {
         let works = copied(&surface.works, "works of adhesion")?;
         Ok(Split(Surface { h: Vec::new(), attraction: surface.attraction, works, work: surface.work }))
@@ -23,7 +23,7 @@ impl Split {
         (if state.contact[i] { (state.p[i] + sigma).max(0.0) } else { 0.0 }, sigma)
     }
 
-    /// Bytes held.
+    /// Bytes of the works of adhesion.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.0.works[..])
     }

@@ -1,11 +1,12 @@
-//! The distance of a state from a snap. At a fixed contact area a change v of the attraction outside moves the surfaces there by `A~ v`,
-//! `A~ = A_OO - A_OC A_CC^-1 A_CO`, which changes the attraction by `s A~ v`. At a given approach the state is stable if
+//! The stability margin of a state, which is 0 where the bodies snap. At a fixed contact area C, a change v of the attraction outside (O) moves
+//! the surfaces there by `A~ v`, `A~ = A_OO - A_OC A_CC^-1 A_CO`, which changes the attraction by `s A~ v`. At a given approach the state is
+//! stable if
 //!
 //! ```text
 //! lambda = the largest eigenvalue of  sqrt(s) A~ sqrt(s)  < 1
 //! ```
 //!
-//! lambda follows from Lanczos' iteration, each step of which solves a linear system on the contact area.
+//! lambda is computed by Lanczos' iteration. Each step of it solves a linear system on the contact area. The stability margin is `1 - lambda`.
 
 use super::level::Level;
 use super::newton::stiffnesses;
@@ -18,14 +19,14 @@ use crate::methods::fields::{self, Fields};
 use crate::progress::Monitor;
 use crate::threads::Threads;
 
-/// Most steps of Lanczos' iteration, and the change of lambda at which it ends.
+/// The largest number of steps of Lanczos' iteration, and the change of lambda at which it ends.
 const MOST_STEPS: usize = 20;
 const LAMBDA_CHANGE: f64 = 1e-4;
-/// The effort of each linear system. The error of lambda, a Rayleigh quotient, is the square of the relative residual.
-/// On large grids a system keeps few directions, since the vectors of Lanczos' iteration need memory as well.
+/// The accuracy and the cost of each linear system. The error of lambda, a Rayleigh quotient, is the square of the relative residual. On large
+/// grids a system keeps few search directions, because the vectors of Lanczos' iteration need memory as well.
 const INNER: Effort = Effort { part: 1e-3, most: 60, at_once: 8 };
 
-/// `1 - lambda` of the present state.
+/// Computes the stability margin `1 - lambda` of the current state. `None`: the caller cancelled.
 pub fn stability(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<Option<f64>> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
     level.clear_fields(0);
@@ -41,7 +42,7 @@ pub fn stability(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<Option<
     Ok(lambda.map(|lambda| 1.0 - lambda))
 }
 
-/// Lanczos' iteration. `roots`: those of s a0. None: the caller cancelled.
+/// Computes lambda by Lanczos' iteration. `roots`: the square roots of s a0. `None`: the caller cancelled.
 fn largest_eigenvalue(
     (level, monitor): (&mut Level, &mut Monitor<'_>),
     roots: &[Short],
@@ -80,11 +81,11 @@ fn largest_eigenvalue(
     Ok(Some(lambda).filter(|_| !monitor.is_cancelled()))
 }
 
-/// `sqrt(s) A~ sqrt(s) v`.
+/// Computes `sqrt(s) A~ sqrt(s) v`.
 fn apply(level: &mut Level, roots: &[Short], v: &[One], fields: &mut Fields<1>) -> Result<Vec<One>> {
     let (n, threads) = (roots.len(), level.problem.threads.clone());
     let none = fields.zeros(n, &threads)?;
-    // At constant attraction: outside dp = sqrt(s) v, in contact no change of the distance.
+    // The system with a slope of 0, that is, at a constant attraction: outside C, dp = sqrt(s) v; in C the distances do not change.
     let mut system = Linearised::new(level, &none, false, fields)?;
     let right = |_: &Linearised<'_>, i: usize| f64::from(roots[i][0]) * v[i][0];
     let Solution { y, product, .. } = solve_in_parts(&mut system, right, INNER, fields)?;
@@ -94,7 +95,7 @@ fn apply(level: &mut Level, roots: &[Short], v: &[One], fields: &mut Fields<1>) 
     Ok(w)
 }
 
-/// The largest eigenvalue of a symmetric tridiagonal matrix, by Sturm's count of those above a number.
+/// The largest eigenvalue of a symmetric tridiagonal matrix, by bisection with Sturm's test whether an eigenvalue exceeds a number.
 fn largest_of_tridiagonal(diagonal: &[f64], beside: &[f64]) -> f64 {
     let reach = |i: usize| {
         let next = |k: Option<usize>| k.and_then(|k| beside.get(k)).map_or(0.0, |b| b.abs());

@@ -6,14 +6,14 @@
 //! force      sum dp = F/(dx dy) - sum p
 //! ```
 //!
-//! preconditioned by `M (a0 y)` on C and `y/(1 - min(s a0, 1/2))` outside, bordered if the force is given:
-//! `da = (sum z - y_F)/sum Y`, `z -= Y da`, with Y the preconditioned column of da.
+//! The preconditioner is `z = M (a0 y)` on C and `z = y/max(1 - s a0, 1/2)` outside. If the force is given, the approach is a further unknown
+//! (the border), and `da = (sum z - y_F)/sum Y`, `z -= Y da`, with Y the preconditioned column of da.
 //!
-//! On large grids preconditioned vectors are not kept. The preconditioner is the same linear map for all directions, so it is applied once to the
-//! sum of basis vectors that makes the solution. Products are kept while they are few.
+//! On large grids preconditioned vectors are not kept. The preconditioner is the same linear map for all search directions, so that it is applied
+//! once to the sum of basis vectors that makes the solution. Products are kept while they are few.
 //!
-//! Vectors are stored in single precision, [`Short`], because a linear solve ends at a tenth of its right-hand side. So
-//! are the s a0, which are of order 1.
+//! Vectors are stored in single precision ([`Short`]), because a linear solve ends at a tenth of its right-hand side. So are the s a0, which are
+//! of order 1.
 
 use super::level::Level;
 use super::unknowns::{is_small, One};
@@ -22,31 +22,33 @@ use crate::methods::fgmres::{self, Bordered, Combination, Direction, Kept, Syste
 use crate::methods::fields::{self, Fields};
 use crate::threads::Threads;
 
-/// Least diagonal of a row outside C in the preconditioner. The diagonal `1 - s a0` is 0 or less for elements that snap alone.
+/// The smallest diagonal of a row outside C in the preconditioner. The diagonal of the system is `1 - s a0`, which is 0 or less for elements that
+/// snap alone.
 const LEAST_DIAGONAL: f64 = 0.5;
 
-/// Products are kept for at most this many directions on large grids. With more directions, one more product of their
-/// sum replaces them. 22 vectors of the basis without products take the memory of 11 with them.
+/// The largest number of search directions whose products are kept on large grids. If there are more, one more product, of their sum, replaces
+/// the kept ones. A basis of 22 vectors without products takes the memory of 11 vectors with them.
 pub const KEPT_PRODUCTS: usize = 11;
 
-/// A number per element in single precision.
+/// One component per element, in single precision.
 pub type Short = [f32; 1];
 
-/// The system, at the contact area and the stiffness given.
+/// The linear system for the contact area of the level and a given slope s of the attraction.
 pub struct Linearised<'a> {
+    /// The grid with the current iterate.
     pub level: &'a mut Level,
     /// s a0; 0 on C.
     pub stiffness: &'a [Short],
     /// The influence of an element on itself.
     a0: f64,
-    /// a0 Y, if the force is given.
+    /// a0 Y if the force is given; empty otherwise.
     column: Vec<Short>,
-    /// 1/sum a0 Y; 0 without Y.
+    /// `1/sum(a0 Y)`; 0 without Y.
     inverse: f64,
 }
 
 impl<'a> Linearised<'a> {
-    /// The system, with Y if the force is given.
+    /// Sets up the system, with Y if the force is given (`by_force`).
     pub fn new(
         level: &'a mut Level,
         stiffness: &'a [Short],
@@ -68,7 +70,7 @@ impl<'a> Linearised<'a> {
         Ok(system)
     }
 
-    /// Element i of the system's column for the approach, times a0.
+    /// Element i of the system's column of da, times a0.
     pub fn column_at(&self, i: usize) -> f64 {
         if self.level.now.contact[i] {
             -1.0
@@ -77,7 +79,8 @@ impl<'a> Linearised<'a> {
         }
     }
 
-    /// Row i of the system for pressures y and their displacements in units of a0, at a fixed approach.
+    /// Row i of the left-hand side for pressures y, at a fixed approach. `displaced` is the displacement of element i by all pressures, in units
+    /// of a0.
     pub fn row(&self, i: usize, y: f64, displaced: f64) -> f64 {
         if self.level.now.contact[i] {
             displaced
@@ -86,14 +89,15 @@ impl<'a> Linearised<'a> {
         }
     }
 
-    /// Gives the system's fields back to the pool.
+    /// Gives the system's fields back to the pool `fields`.
     pub fn give(self, fields: &mut Fields<1>) {
         if !self.column.is_empty() {
             fields.give_of(self.column);
         }
     }
 
-    /// Solves for a right-hand side. Displacements are stored in units of a0, so that they are within the range of single precision for any units.
+    /// Solves for the right-hand side `r`. Displacements are stored in units of a0, so that they are within the range of single precision for any
+    /// units of the caller.
     pub fn solve(
         &mut self,
         r: Bordered<1>,
@@ -105,15 +109,18 @@ impl<'a> Linearised<'a> {
         Ok(Combination { unit: self.a0, ..found })
     }
 
+    /// Whether the force is given, so that the approach is an unknown.
     fn by_force(&self) -> bool {
         !self.column.is_empty()
     }
 
+    /// The sum of a field.
     fn sum(&self, field: &[Short]) -> f64 {
         let [sum] = fields::sum(&self.level.problem.threads, field.len(), |i| field[i].map(f64::from));
         sum
     }
 
+    /// Applies the preconditioner to a field, at a fixed approach.
     fn precondition_field(&mut self, y: &[Short], z: &mut [Short]) {
         self.level.precondition(y, z);
         let contact = &self.level.now.contact;
@@ -123,6 +130,7 @@ impl<'a> Linearised<'a> {
         });
     }
 
+    /// Applies the preconditioner to a field and, if the force is given, its border.
     fn precondition(&mut self, r: &Bordered<1, f32>, fields: &mut Fields<1>) -> Result<Bordered<1, f32>> {
         let mut z = fields.take_of(r.field.len())?;
         self.precondition_field(&r.field, &mut z);
@@ -134,7 +142,7 @@ impl<'a> Linearised<'a> {
         Ok(Bordered { field: z, border: [by * self.a0] })
     }
 
-    /// A z.
+    /// Computes A z in double precision.
     fn displaced(&mut self, z: &[Short], fields: &mut Fields<1>) -> Result<Vec<One>> {
         let mut displaced = fields.take(z.len())?;
         let problem = &mut self.level.problem;

@@ -1,4 +1,4 @@
-//! The unknowns of one grid, and their measures.
+//! The unknowns of one grid, and the residuals of the conditions that they must satisfy.
 
 use super::law::Attraction;
 use crate::contact::{largest, relative, CANCELLED, ROUND_OFF};
@@ -8,25 +8,25 @@ use crate::methods::fgmres::Bordered;
 use crate::methods::fields;
 use crate::threads::Threads;
 
-/// A number per element, as fields of one number.
+/// One component per element. Fields may have several components, and those of adhesion have one.
 pub type One = [f64; 1];
 
-/// The name of this memory in messages.
+/// The name of the memory of unknowns in messages.
 pub const MEMORY: &str = "the adhesion problem";
 
-/// Total pressures p with the approach as their border, u = A p, and the contact area.
+/// An iterate: total pressures p with the approach, displacements u = A p, and the contact area.
 #[derive(Default)]
 pub struct Unknowns {
-    /// p, and the approach.
+    /// p as the field, and the approach as the border.
     pub p: Bordered<1>,
-    /// u = A p, updated from step to step.
+    /// u = A p, updated from step to step. [`Level::refresh`](super::level::Level::refresh) computes u anew.
     pub u: Vec<One>,
-    /// C.
+    /// The contact area C.
     pub contact: Vec<bool>,
 }
 
 impl Unknowns {
-    /// p = 0 on n elements.
+    /// p = 0 on n elements, without contact, at the approach 0.
     pub fn new(n: usize, threads: &Threads) -> Result<Unknowns> {
         let mut unknowns = Unknowns::without_fields(n, threads)?;
         unwritten(&mut unknowns.p.field, n, [f64::NAN], MEMORY, threads)?;
@@ -35,7 +35,7 @@ impl Unknowns {
         Ok(unknowns)
     }
 
-    /// Unknowns of n elements out of contact, without the fields of pressures and displacements.
+    /// Unknowns of n elements without contact, and without the fields of pressures and displacements.
     pub fn without_fields(n: usize, threads: &Threads) -> Result<Unknowns> {
         let mut unknowns = Unknowns::default();
         unwritten(&mut unknowns.contact, n, false, MEMORY, threads)?;
@@ -48,20 +48,20 @@ impl Unknowns {
         self.p.border[0]
     }
 
-    /// Sets p = 0, without contact.
+    /// Sets p = 0 and u = 0, without contact. The approach stays.
     pub fn unload(&mut self, threads: &Threads) {
         fields::fill(threads, &mut self.p.field, |_| [0.0]);
         fields::fill(threads, &mut self.u, |_| [0.0]);
         self.contact.fill(false);
     }
 
-    /// Copies other unknowns.
+    /// Copies all of `other`.
     pub fn copy_from(&mut self, other: &Unknowns) -> Result<()> {
         self.copy_pressures(other, &Threads::One)?;
         self.copy_displacements(other)
     }
 
-    /// Copies other unknowns; on large grids without u, which a product recomputes.
+    /// Copies `other`, on large grids without u, which a product can recompute.
     pub fn keep(&mut self, other: &Unknowns, threads: &Threads) -> Result<()> {
         self.copy_pressures(other, threads)?;
         if is_small(other.u.len()) {
@@ -70,7 +70,7 @@ impl Unknowns {
         Ok(())
     }
 
-    /// Copies what was kept to other unknowns. Returns whether u was kept and is copied as well.
+    /// Copies what [`Unknowns::keep`] has stored to other unknowns. Returns whether this includes u.
     pub fn put(&self, to: &mut Unknowns) -> bool {
         to.p.field.copy_from_slice(&self.p.field);
         to.contact.copy_from_slice(&self.contact);
@@ -97,108 +97,116 @@ impl Unknowns {
         Ok(())
     }
 
-    /// Extrapolates from other unknowns through these: adds `part` times the difference. The contact area stays.
+    /// Extrapolates along the line from the unknowns `from` through these: adds `part` times the difference to p and u. The contact area and the
+    /// approach stay.
     pub fn go_along(&mut self, from: &Unknowns, part: f64, threads: &Threads) {
         let on = |[to]: [f64; 1], [from]: [f64; 1]| [to + part * (to - from)];
         fields::map(threads, &mut self.p.field, |i, to| on(to, from.p.field[i]));
         fields::map(threads, &mut self.u, |i, to| on(to, from.u[i]));
     }
 
-    /// Bytes held.
+    /// Bytes of the arrays.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.p.field[..]) + size_of_val(&self.u[..]) + self.contact.len()
     }
 }
 
-/// Most elements of a small grid.
+/// The largest number of elements of a small grid.
 const SMALL: usize = 1 << 15;
 
-/// Whether a grid of n elements is small, so that memory is spent to save products.
+/// Whether a grid of n elements is small. There memory is spent to save products.
 pub fn is_small(n: usize) -> bool {
     n <= SMALL
 }
 
-/// The surfaces: h, the law and the work of adhesion of each element.
+/// The surfaces of one grid: undeformed distances, the law of attraction, and the work of adhesion of each element.
 #[derive(Default)]
 pub struct Surface {
-    /// h; `+infinity` where there is no surface.
+    /// The undeformed distances h; `+infinity` where there is no surface.
     pub h: Vec<f64>,
-    /// The law, with the range of this grid.
+    /// The law of attraction, with the range of this grid.
     pub attraction: Attraction,
-    /// w of each element; empty if w is uniform.
+    /// The work of adhesion w of each element; empty if w is uniform.
     pub works: Vec<f64>,
-    /// The uniform or the largest w.
+    /// The uniform w, or the largest one.
     pub work: f64,
 }
 
-/// Least scale of pressures, relative to w/range: bodies that are apart under a law of finite range have no pressures.
+/// The smallest scale of pressures, relative to w/range. Bodies that are apart under a law of finite range have no pressures that could be the
+/// scale.
 const LEAST_PRESSURE_SCALE: f64 = f64::EPSILON;
 
 impl Surface {
-    /// w of element i.
+    /// The work of adhesion w of element i.
     #[inline]
     pub fn work_at(&self, i: usize) -> f64 {
         self.works.get(i).copied().unwrap_or(self.work)
     }
 
-    /// sigma of element i at a distance.
+    /// The attraction sigma of element i at the distance e.
     #[inline]
     pub fn traction(&self, i: usize, e: f64) -> f64 {
         self.attraction.traction(self.work_at(i), e)
     }
 
-    /// e = h - approach + u of element i.
+    /// The deformed distance e = h - approach + u of element i.
     #[inline]
     pub fn distance(&self, i: usize, unknowns: &Unknowns) -> f64 {
         self.h[i] - unknowns.p.border[0] + unknowns.u[i][0]
     }
 }
 
-/// The measures of the conditions, each relative to its own scale. If contact pressures and attraction cancel, as below a flat punch without a
-/// load, total pressures are round-off: the scale of pressures is p, or [`CANCELLED`] times q if that is larger.
+/// The residuals of the conditions, each relative to its own scale, and related counts. If contact pressures and attraction cancel, as below a
+/// flat punch without a load, the total pressures are round-off. Therefore the scale of pressures is that of p, or [`CANCELLED`] times that of q
+/// if this is larger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
-    /// rms over C of e, relative to that of `h - approach`, or to the displacement of one element by itself under p or
-    /// [`CANCELLED`] q, whichever is larger. 0 if both are the round-off of bodies that fit exactly. At least the size
-    /// of `opening`, relative to the rms of `h - approach`.
+    /// The rms over C of e. It should be 0. The scale is the larger of two lengths: the rms over C of `h - approach`, and the displacement of one
+    /// element by itself under the rms over C of p (or [`CANCELLED`] q). The residual is 0 if e and `h - approach` are the round-off of bodies
+    /// that fit exactly. It is at least the size of `opening`, relative to the rms of `h - approach`.
     pub distance: f64,
-    /// The largest -e outside C, a length; 0 if there is none.
+    /// The largest -e outside C, a length; 0 if no e there is negative.
     pub penetration: f64,
-    /// The penetration relative to the scale of `distance`.
+    /// `penetration`, relative to the scale of `distance`.
     pub violation: f64,
     /// `||p + sigma(e)||` outside C, relative to `||p||`, or to [`CANCELLED`] times `||q||` in C if that is larger.
     pub law: f64,
-    /// The given force less the sum of p, relative to the sum of |p|, or to [`CANCELLED`] times the sum of q.
+    /// The size of the missing force, as the difference of sums of p, relative to the sum of |p|, or to [`CANCELLED`] times the sum of |q| in C.
+    /// 0 if the approach is given.
     pub force: f64,
-    /// Elements in contact.
+    /// The number of elements in contact.
     pub count: usize,
-    /// Elements that have entered or left the contact.
+    /// The number of elements that have entered or left the contact since the last call.
     pub changed: usize,
     /// The sum of p.
     pub pressures: f64,
-    /// The mean of `h - approach` if all elements touch and a uniform pressure displaces nothing: e has this mean for any p. 0 otherwise.
+    /// The mean of `h - approach`, if all elements are in contact, the approach is given, and a uniform pressure displaces nothing: e then has
+    /// this mean for any p. 0 otherwise.
     pub opening: f64,
 }
 
 impl Measured {
-    /// Whether distances and law are met to a tolerance, whatever the force.
+    /// Whether `distance` and `law` are within a tolerance, so that this is a state of equilibrium, whatever the force.
     pub fn is_state(&self, tolerance: f64) -> bool {
         largest([self.distance, self.law]) <= tolerance
     }
 
-    /// The largest measure; infinite if one is NaN.
+    /// The largest residual; infinite if one is NaN.
     pub fn worst(&self) -> f64 {
         largest([self.distance, self.violation, self.law, self.force])
     }
 
-    /// The largest measure without the violation, which a single element can keep large: the size of the next Newton step.
+    /// The largest residual except `violation`, which a single element can keep large. It indicates the size of the next Newton step.
     pub fn residual(&self) -> f64 {
         largest([self.distance, self.law, self.force])
     }
 }
 
-/// Takes C from the natural map q - e/a0 > 0, unless it `is_kept`, and measures. `round_off`: that of displacements per unit of pressure; `wanted`:
-/// the sum of p if the force is given; `is_mean_free`: whether the approach is given and a uniform pressure displaces nothing.
+/// Updates C by the natural map q - e/a0 > 0, unless it `is_kept`, and computes the residuals.
+///
+/// * `self_influence`: a0; `round_off`: the round-off of displacements per unit of pressure.
+/// * `wanted`: the sum of p, if the force is given.
+/// * `is_mean_free`: whether the approach is given and a uniform pressure displaces nothing.
 pub fn measure(
     surface: &Surface,
     unknowns: &mut Unknowns,
@@ -208,6 +216,8 @@ pub fn measure(
 ) -> Measured {
     let Unknowns { p, u, contact } = unknowns;
     let (p, approach, u) = (&p.field, p.border[0], &*u);
+    // `ee`, `dd`, `pc`, `qc`: sums of squares over C of e, h - approach, p and q; `off`: of p + sigma outside; `pp`: of p everywhere. `sum`,
+    // `all`: sums of p and |p|; `repulsion`, `distances`: sums over C of |q| and h - approach.
     let [ee, dd, count, off, pp, pc, sum, all, qc, repulsion, changed, distances] =
         fields::over(threads, contact.chunks_mut(fields::BLOCK), |first, contact| {
             let mut sums = [0.0; 12];
@@ -254,7 +264,7 @@ pub fn measure(
     }
 }
 
-/// The elastic energy `1/2 sum p u`, and the remaining work of the attraction, `sum W(e)`, both per area of an element.
+/// The elastic energy `1/2 sum p u`, and the remaining work of the attraction, `sum W(e)`. Both are divided by the area of an element.
 pub fn energies(surface: &Surface, unknowns: &Unknowns, threads: &Threads) -> [f64; 2] {
     fields::sum(threads, unknowns.u.len(), |i| {
         let e = surface.distance(i, unknowns);

@@ -1,4 +1,4 @@
-//! The coefficients of one grid: kernel, diagonal and coupling. See [`influence`](super).
+//! The influence coefficients of one grid: the kernel, and an optional diagonal and coupling. The formula is in [`influence`](super).
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use super::{Layer, Patches, RowTables};
 use crate::error::Result;
 use crate::grid::Grid;
 
-/// The influence coefficients of one grid. A copy shares them.
+/// The influence coefficients of one grid. Copies share the arrays.
 #[derive(Clone, Debug)]
 pub struct Coefficients {
     kernel: Arc<dyn Kernel>,
@@ -22,7 +22,7 @@ impl<K: Kernel + 'static> From<K> for Coefficients {
 }
 
 impl Coefficients {
-    /// The coefficients of a kernel alone.
+    /// Coefficients of a kernel without a layer and without patches.
     pub fn new(kernel: Arc<dyn Kernel>) -> Coefficients {
         Coefficients { kernel, diagonal: None, coupling: None }
     }
@@ -32,12 +32,12 @@ impl Coefficients {
         Coefficients { kernel, ..self }
     }
 
-    /// These coefficients with a compliant layer.
+    /// These coefficients with a compliant layer in addition.
     pub fn with_layer(self, layer: Layer) -> Coefficients {
         Coefficients { diagonal: Some(layer), ..self }
     }
 
-    /// These coefficients scaled between patches.
+    /// These coefficients, multiplied by the factors between patches.
     pub fn with_patches(self, patches: Patches) -> Coefficients {
         Coefficients { coupling: Some(patches), ..self }
     }
@@ -57,29 +57,30 @@ impl Coefficients {
         self.diagonal().is_some() || self.patches().is_some()
     }
 
-    /// The compliance that the layer adds to the coefficient at offset (0, 0) everywhere.
+    /// The smallest compliance of the layer, which the coefficient at offset (0, 0) contains; 0 without a layer.
     fn least(&self) -> f64 {
         self.diagonal.as_ref().map_or(0.0, |layer| layer.least)
     }
 
-    /// The diagonal of element `i` beyond the kernel: the compliance of its layer.
+    /// The compliance of the layer on element `i`; 0 without a layer.
     pub fn layer(&self, i: usize) -> f64 {
         self.least() + self.diagonal().map_or(0.0, |more| more[i])
     }
 
-    /// The coefficient at offset `(kx, ky)`, without factors between patches; for row tables the mean over rows.
+    /// The coefficient at offset `(kx, ky)`, with the smallest compliance of the layer and without the factors between patches. For row tables it
+    /// is the mean over the rows.
     pub fn at(&self, kx: i64, ky: i64) -> f64 {
         let layer = if (kx, ky) == (0, 0) { self.least() } else { 0.0 };
         self.kernel.at(kx, ky) + layer
     }
 
-    /// `A_IJ` of elements i and j of `grid`, with all effects.
+    /// `A_IJ` of elements i and j of `grid`, with layer and patches.
     pub fn entry(&self, grid: &Grid, i: usize, j: usize) -> f64 {
         let place = |i: usize| ((i % grid.mx) as i64, (i / grid.mx) as i64);
         self.entry_of(self.kernel.between(place(j), place(i)), i, j)
     }
 
-    /// `A_IJ` of elements i and j, from the coefficient of the kernel.
+    /// `A_IJ` of elements i and j. `kernel` is the kernel's coefficient between them.
     pub fn entry_of(&self, kernel: f64, i: usize, j: usize) -> f64 {
         let coupled = self.coupling.as_ref().map_or(kernel, |patches| patches.between(i, j) * kernel);
         match i == j {
@@ -88,13 +89,14 @@ impl Coefficients {
         }
     }
 
-    /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`, `kx >= 0` when the coefficients are even.
+    /// Fills `out[k]` with the coefficient at offset `(kx + k, ky)`, as [`Kernel::fill_row`] does, with the smallest compliance of the layer.
     pub fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
         self.kernel.fill_row(kx, ky, out);
         self.add_layer(kx, ky, out);
     }
 
-    /// Fills `out[k]` with the symmetric part of the coefficients, as [`Kernel::fill_symmetric_row`].
+    /// Fills `out[k]` with the symmetric part of the coefficients, as [`Kernel::fill_symmetric_row`] does, with the smallest compliance of the
+    /// layer.
     pub fn fill_symmetric_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
         self.kernel.fill_symmetric_row(kx, ky, out);
         self.add_layer(kx, ky, out);
@@ -106,8 +108,9 @@ impl Coefficients {
         }
     }
 
-    /// Fills `out[k]` with the even part of the coefficients at offsets `(+-k, +-ky)` and a typical layer, for preconditioners. If a uniform
-    /// pressure displaces nothing, it gets a response: that of the mean layer, or without a layer one that makes A invertible.
+    /// Fills `out[k]` with the even part of the coefficients at offsets `(+-k, +-ky)`, with the typical compliance of the layer. Preconditioners
+    /// use it. With two periods a uniform pressure gets the response of the mean layer, or without a layer at least about the response of the
+    /// longest wave.
     pub fn fill_even_row(&self, ky: i64, out: &mut [f64]) {
         self.kernel.fill_even_row(ky, out);
         let constant = match &self.diagonal {
@@ -122,48 +125,52 @@ impl Coefficients {
         }
     }
 
-    /// The displacement of a pressure wave with a typical layer, if the preconditioner is made from waves and not from coefficients.
+    /// The displacement by a pressure wave of amplitude 1, with the typical compliance of the layer. `None` if a preconditioner takes the
+    /// coefficients instead (see [`Kernel::wave`]).
     pub fn wave(&self, grid: &Grid, kx: f64, ky: f64) -> Option<f64> {
         let layer = self.diagonal.as_ref().map_or(0.0, |layer| layer.typical);
         self.kernel.wave(grid, kx, ky).map(|value| value + layer)
     }
 
-    /// The largest absolute value of a coefficient within `grid`, or a little more: without a negative constant, with the largest layer.
+    /// A bound on the absolute values of the coefficients on `grid`: the kernel's largest one without a negative constant, plus the largest
+    /// compliance of the layer.
     pub fn largest(&self, grid: &Grid) -> f64 {
-        self.kernel.largest(grid) - self.kernel.constant().min(0.0) + self.diagonal.as_ref().map_or(0.0, Layer::most)
+        self.kernel.largest(grid) - self.kernel.constant().min(0.0) + self.diagonal.as_ref().map_or(0.0, Layer::largest)
     }
 
-    /// Whether the coefficients of offsets are even in both directions.
+    /// Whether the kernel is even in both directions.
     pub fn is_even(&self, grid: &Grid) -> bool {
         self.kernel.is_even(grid)
     }
 
-    /// Whether A is symmetric on `grid`, to within round-off of a table.
+    /// Whether A is symmetric on `grid`, up to the round-off of a table.
     pub fn is_symmetric(&self, grid: &Grid) -> bool {
         self.kernel.is_symmetric(grid)
     }
 
-    /// The directions in which A is circulant on `grid`, not only Toeplitz.
+    /// Whether A is circulant on `grid`, not only Toeplitz, in x and in y.
     pub fn repeats(&self, grid: &Grid) -> (bool, bool) {
         self.kernel.repeats(grid)
     }
 
-    /// The diagonal of A beyond the coefficient at offset (0, 0), per element; none if it is uniform.
+    /// The diagonal of A beyond the coefficient at offset (0, 0): the compliance of the layer on each element less the smallest one. `None` if
+    /// the layer is uniform.
     pub fn diagonal(&self) -> Option<&[f64]> {
-        self.diagonal.as_ref().and_then(Layer::more)
+        self.diagonal.as_ref().and_then(Layer::beyond_least)
     }
 
-    /// Patches between which the coefficients are scaled.
+    /// The patches between which coefficients are multiplied by factors.
     pub fn patches(&self) -> Option<&Patches> {
         self.coupling.as_ref()
     }
 
-    /// Tables of loaded rows, and the compliance that a layer adds to all of them at offset (0, 0).
+    /// The tables of loaded rows, and the smallest compliance of the layer, which is part of the influence of each element on itself. `None` if
+    /// the kernel is another one.
     pub fn row_tables(&self) -> Option<(&RowTables, f64)> {
         RowTables::of(&*self.kernel).map(|tables| (tables, self.least()))
     }
 
-    /// Whether A depends on more than offsets, so that the operator of a part of the grid depends on its place.
+    /// Whether A depends on more than the offset, so that the operator of a part of the grid depends on where the part lies.
     pub fn depends_on_place(&self) -> bool {
         self.diagonal().is_some() || self.patches().is_some() || self.row_tables().is_some()
     }
@@ -173,35 +180,35 @@ impl Coefficients {
         self.diagonal.is_none() && self.kernel.is_mean_free()
     }
 
-    /// The kernel's influence of an element on itself, without a negative constant, which all elements have in common.
+    /// The kernel's coefficient at offset (0, 0), without a negative constant: the constant is the same in all coefficients.
     fn kernel_on_itself(&self) -> f64 {
         self.kernel.at(0, 0) - self.kernel.constant().min(0.0)
     }
 
-    /// An element's influence on itself, with the least layer.
+    /// An element's influence on itself, with the smallest compliance of the layer.
     pub fn self_influence(&self) -> f64 {
         self.kernel_on_itself() + self.least()
     }
 
-    /// The coefficients for a prescribed force: without the [constant](Kernel::constant) of the kernel. None if the constant is 0.
+    /// The coefficients for a prescribed force: those without the [constant](Kernel::constant) of the kernel. `None` if the constant is 0.
     pub fn without_constant(&self) -> Option<Coefficients> {
         self.kernel.without_constant().map(|kernel| self.clone().with_kernel(kernel))
     }
 
-    /// For preconditioners, which have one compliance each: the coefficients with each of several compliances, and the weights of the elements
-    /// for each. No weights: the layer is uniform, or there is none.
+    /// The coefficients with each of the compliances for which a preconditioner is made, and the weights of the elements for each (see
+    /// [`Layer::levels`]). The weights are empty if the layer is uniform or missing.
     pub fn levels(&self) -> Result<Vec<(Coefficients, Vec<f64>)>> {
         let Some(layer) = &self.diagonal else { return Ok(vec![(self.clone(), Vec::new())]) };
         let levels = layer.levels(self.kernel_on_itself())?.into_iter();
         Ok(levels.map(|(layer, weights)| (self.clone().with_layer(layer), weights)).collect())
     }
 
-    /// An element's influence on itself with the typical layer, relative to that without a layer.
+    /// An element's influence on itself with the typical compliance of the layer, relative to that without a layer.
     pub fn typical_compliance(&self) -> f64 {
         1.0 + self.diagonal.as_ref().map_or(0.0, |layer| layer.typical / self.kernel_on_itself())
     }
 
-    /// The coefficients on a grid coarsened from `fine` to `coarse`.
+    /// The coefficients on a grid that is coarsened from `fine` to `coarse`.
     pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Coefficients> {
         Ok(Coefficients {
             kernel: self.kernel.coarsen(fine, coarse)?,
@@ -210,7 +217,7 @@ impl Coefficients {
         })
     }
 
-    /// Bytes of coefficients held; 0 for the half-space.
+    /// Bytes of the stored coefficients; 0 for the half-space.
     pub fn bytes(&self) -> usize {
         let layer = self.diagonal().map_or(0, size_of_val);
         self.kernel.bytes() + layer + self.coupling.as_ref().map_or(0, Patches::bytes)

@@ -1,8 +1,8 @@
-//! The diagonal of A: a thin compliant layer, `A p + c p`, whose displacement at element I is `c_I p_I` (Johnson, Contact Mechanics,
-//! section 4.3: an elastic foundation, here in series with the half-space).
+//! The diagonal of A: a thin compliant layer. Under a pressure `p_I` it adds `c_I p_I` to the displacement of element I, so that u = A p + c p.
+//! It is an elastic foundation (Johnson, Contact Mechanics, section 4.3), here in series with the half-space.
 //!
-//! min(c) is added to the coefficient at offset (0, 0); the operator adds `c - min(c)` as a diagonal. A preconditioner has one c: see
-//! `typical` and [`Layer::levels`].
+//! The coefficient at offset (0, 0) contains min(c); the operator adds the remaining `c - min(c)` as a diagonal. A preconditioner is a circulant
+//! and has one c: see `typical`, and [`Layer::levels`] for a layer that needs several preconditioners.
 
 use std::sync::Arc;
 
@@ -10,85 +10,90 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::collected;
 
-/// The name of this memory in messages.
+/// The name of the memory of layers in messages.
 const LAYER: &str = "the layer";
 
-/// Means over c are geometric means of c plus this response of A, in units of the self-influence. The smallest
-/// eigenvalue of A is 0.3. Measured: with 2 an iteration needs up to a third fewer products than with 0.3, and fewer
-/// levels; 1 to 4 differ little.
+/// A typical c follows from the geometric mean of `c + s`, where s is MEAN_RESPONSE times the self-influence and stands for the response of the
+/// bodies. The smallest eigenvalue of the bodies' A is 0.3 times the self-influence. Measured: with 2 an iteration needs up to a third fewer
+/// products than with 0.3, and fewer levels; 1 to 4 differ little.
 const MEAN_RESPONSE: f64 = 2.0;
-/// The ratio of neighbouring levels of c for preconditioners, and the most levels.
+/// The largest ratio of `c + s` at neighbouring levels, unless this takes more than MOST_LEVELS levels. Then the ratio is larger.
 const LEVEL_RATIO: f64 = 6.0;
 const MOST_LEVELS: f64 = 4.0;
 
-/// A compliant layer.
+/// A compliant layer: its compliance c on each element, as displacement over pressure.
 #[derive(Clone, Debug)]
 pub struct Layer {
-    /// The least c, which the coefficient at offset (0, 0) contains.
+    /// The smallest c. The coefficient at offset (0, 0) contains it.
     pub(super) least: f64,
-    /// The compliance beyond the least, per element; none if c is uniform.
-    more: Option<Arc<Vec<f64>>>,
-    /// The c of preconditioners.
+    /// The compliance of each element less the smallest one. `None` if c is uniform.
+    beyond_least: Option<Arc<Vec<f64>>>,
+    /// The c that preconditioners use for all elements.
     pub(super) typical: f64,
-    /// The mean c, the response to a uniform pressure.
+    /// The mean of c: the mean displacement of the layer by a uniform pressure of 1.
     pub(super) mean: f64,
 }
 
 impl Layer {
-    /// A layer of uniform compliance c.
+    /// A layer with the same compliance c everywhere.
     pub fn uniform(c: f64) -> Layer {
-        Layer { least: c, more: None, typical: c, mean: c }
+        Layer { least: c, beyond_least: None, typical: c, mean: c }
     }
 
-    /// A layer of one c per element, on coefficients with this `self_influence`.
+    /// A layer with one c per element, on bodies with this `self_influence`.
     pub fn per_element(c: &[f64], self_influence: f64) -> Result<Layer> {
         let least = c.iter().copied().fold(f64::INFINITY, f64::min);
-        let more = Some(Arc::new(collected(c.iter().map(|c| c - least), LAYER)?));
-        // The geometric mean of the responses of A and the layer together.
-        let short = MEAN_RESPONSE * self_influence;
+        let beyond_least = Some(Arc::new(collected(c.iter().map(|c| c - least), LAYER)?));
+        // The geometric mean of the responses of bodies and layer together.
+        let response = MEAN_RESPONSE * self_influence;
         let n = c.len() as f64;
-        let geometric = (c.iter().map(|c| (c + short).ln()).sum::<f64>() / n).exp();
-        Ok(Layer { least, more, typical: (geometric - short).max(0.0), mean: c.iter().sum::<f64>() / n })
+        let geometric = (c.iter().map(|c| (c + response).ln()).sum::<f64>() / n).exp();
+        Ok(Layer { least, beyond_least, typical: (geometric - response).max(0.0), mean: c.iter().sum::<f64>() / n })
     }
 
-    /// The diagonal that the operator adds to the displacements of single elements.
-    pub fn more(&self) -> Option<&[f64]> {
-        self.more.as_ref().map(|more| &more[..])
+    /// The diagonal `c - min(c)` that the operator adds. `None` if c is uniform.
+    pub fn beyond_least(&self) -> Option<&[f64]> {
+        self.beyond_least.as_ref().map(|values| &values[..])
     }
 
-    /// The largest compliance.
-    pub fn most(&self) -> f64 {
-        self.least + self.more().map_or(0.0, |more| more.iter().copied().fold(0.0, f64::max))
+    /// The largest c.
+    pub fn largest(&self) -> f64 {
+        self.least + self.beyond_least().map_or(0.0, |values| values.iter().copied().fold(0.0, f64::max))
     }
 
-    /// Levels c_l of c, each as the `typical` c of a layer, with the weights `w = sqrt((c_l + s)/(c + s)) sqrt(share)` of the elements. s is
-    /// the response of A; the shares of neighbouring levels are linear in log(c + s). If c is large, A is negligible and the first factor
-    /// makes `w^2/c_l` the wanted 1/c. A uniform layer is one level without weights.
+    /// Several layers for several preconditioners, each with its own `typical` compliance `c_l`, and the weights of the elements in each:
+    ///
+    /// ```text
+    /// w = sqrt((c_l + s)/(c + s)) sqrt(share),    s the response of the bodies
+    /// ```
+    ///
+    /// The shares of an element on the two levels next to it are linear in log(c + s), and add up to 1. If c is large compared with s, the
+    /// bodies' response is negligible, and the sum of `w^2/c_l` over the levels is the wanted `1/c`. A uniform layer is one level, and its
+    /// weights are empty.
     pub fn levels(&self, self_influence: f64) -> Result<Vec<(Layer, Vec<f64>)>> {
-        let Some(more) = self.more() else { return Ok(vec![(self.clone(), Vec::new())]) };
-        let short = MEAN_RESPONSE * self_influence;
-        let meets = collected(more.iter().map(|more| (self.least + more + short).ln()), LAYER)?;
-        let (low, high) = meets.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| (l.min(*m), h.max(*m)));
+        let Some(beyond_least) = self.beyond_least() else { return Ok(vec![(self.clone(), Vec::new())]) };
+        let response = MEAN_RESPONSE * self_influence;
+        let logs = collected(beyond_least.iter().map(|c| (self.least + c + response).ln()), LAYER)?;
+        let (low, high) = logs.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| (l.min(*m), h.max(*m)));
         let steps = ((high - low) / LEVEL_RATIO.ln()).ceil().min(MOST_LEVELS - 1.0);
         let step = if steps > 0.0 { (high - low) / steps } else { 1.0 };
         let level = |l: usize| {
-            let meets_here = low + l as f64 * step;
-            let typical = (meets_here.exp() - short).max(0.0);
-            let weight =
-                |m: &f64| (0.5 * (meets_here - m)).exp() * (1.0 - (m - meets_here).abs() / step).max(0.0).sqrt();
-            Ok((Layer { typical, ..self.clone() }, collected(meets.iter().map(weight), LAYER)?))
+            let log_here = low + l as f64 * step;
+            let typical = (log_here.exp() - response).max(0.0);
+            let weight = |m: &f64| (0.5 * (log_here - m)).exp() * (1.0 - (m - log_here).abs() / step).max(0.0).sqrt();
+            Ok((Layer { typical, ..self.clone() }, collected(logs.iter().map(weight), LAYER)?))
         };
         (0..=steps as usize).map(level).collect()
     }
 
-    /// The layer of a coarser grid: c is the mean over the finer elements.
+    /// The layer on a coarser grid: c is the mean over the fine elements in a coarse one.
     pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Layer> {
-        let Some(more) = self.more() else { return Ok(self.clone()) };
+        let Some(beyond_least) = self.beyond_least() else { return Ok(self.clone()) };
         let mean = |i: usize| {
             let (sum, count) =
-                coarse.children(fine, i).fold((0.0, 0.0), |(sum, count), i| (sum + more[i], count + 1.0));
+                coarse.children(fine, i).fold((0.0, 0.0), |(sum, count), i| (sum + beyond_least[i], count + 1.0));
             sum / count
         };
-        Ok(Layer { more: Some(Arc::new(collected((0..coarse.len()).map(mean), LAYER)?)), ..*self })
+        Ok(Layer { beyond_least: Some(Arc::new(collected((0..coarse.len()).map(mean), LAYER)?)), ..*self })
     }
 }

@@ -8,13 +8,13 @@
 //! F(a, b) = a asinh(b/|a|) + b asinh(a/|b|)
 //! ```
 //!
-//! (Love 1929; Johnson, Contact Mechanics, eq. 3.25). The closed form suffers from cancellation: at offset `k` it loses a factor `k^2`.
-//! So it is used only for the four coefficients next to the element:
+//! (Love 1929; Johnson, Contact Mechanics, eq. 3.25). The closed form suffers from cancellation: at offset `k` it loses a factor `k^2` of
+//! accuracy. Therefore it is used only at the four offsets with kx, ky <= 1. At other offsets there are two methods:
 //!
-//! * beyond six half-diagonals `d`, a multipole series, with `r^2 = X^2 + Y^2`, `z = (d/r)^2`, `t = (X/r)^2`:
-//!   `A = c dx dy / r * sum_k z^k q_k(t)`; `z^k q_k` is the mean over the element of the Legendre term of degree `2k`;
-//! * between, the closed form in one direction, `asinh(X+/|y|) - asinh(X-/|y|)` written as one logarithm of positive
-//!   terms, and Gauss-Legendre in the other, with `y = 0` at least three half-widths away.
+//! * Beyond six half-diagonals `d`, a multipole series. With `r^2 = X^2 + Y^2`, `z = (d/r)^2`, `t = (X/r)^2` it is `A = c dx dy / r * sum_k z^k
+//!   q_k(t)`, where `z^k q_k` is the mean over the element of the Legendre term of degree `2k`.
+//! * Nearer, the closed form in one direction and Gauss-Legendre quadrature in the other. The closed form `asinh(X+/|y|) - asinh(X-/|y|)` is
+//!   written as one logarithm of positive terms. Its singularity y = 0 is at least three half-widths away from the interval of the quadrature.
 
 use std::cell::RefCell;
 use std::f64::consts::PI;
@@ -27,23 +27,24 @@ use crate::grid::Grid;
 use crate::powers::{apart, times_power};
 use crate::threads::made_once;
 
-/// `(distance in half-diagonals, K)`: from this distance on the terms `k <= K` suffice; the first omitted term is
-/// `z^(K+1) <= 2e-15` (1e-14 at the first distance, where `|q_9| < 0.1`).
+/// Pairs of a distance in half-diagonals and a number K: from this distance on the terms `k <= K` of the multipole series suffice. The first
+/// omitted term is `z^(K+1) <= 2e-15` (1e-14 at the first distance, where `|q_9| < 0.1`).
 pub const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2)];
-/// Most terms of the multipole series (degree `2 * 8 = 16`).
+/// The largest k of the multipole series (degree `2 * 8 = 16`).
 pub const MOST_TERMS: usize = SERIES[0].1;
 
-/// Sizes of quadrants of coefficients that are kept once a grid of this size needs them. Computing them takes as long as a product or more, and
-/// operators of the grid, its windows and coarser grids, preconditioners and the next solver need the same ones. At most 4.4 MB for a shape; a
-/// quadrant within a kept one is not computed.
+/// The sizes of quadrants of coefficients that are computed and kept, once a grid needs a part of one. Computing a quadrant takes as long as a
+/// product or more. The operators of a grid, of its windows and of coarser grids, preconditioners and the next solver need the same coefficients.
+/// All quadrants of one shape have at most 4.4 MB. A quadrant within one that is kept is not computed.
 const QUADRANTS: [usize; 12] = [8, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
 
-/// Largest quadrant that is computed as a whole for any part of it.
+/// The largest quadrant that is computed as a whole, even if only a small part of it is needed.
 const SMALL_QUADRANT: usize = 64;
 
-/// Coefficients of the half-space for one element size.
+/// The Boussinesq-Love coefficients of an elastic half-space on elements of one size.
 #[derive(Clone, Debug)]
 pub struct HalfSpace {
+    /// The sides of an element.
     pub(super) dx: f64,
     pub(super) dy: f64,
     /// `c = 1/(pi E*)`.
@@ -51,32 +52,33 @@ pub struct HalfSpace {
     shape: Arc<Shape>,
 }
 
-/// The coefficients of one ratio dx/dy: an element twice as long and twice as wide has twice the coefficients. Here they are integrals of 1/rho over
-/// an element, relative to its length in x.
+/// The coefficients of all elements with one ratio dx/dy: if an element is twice as long and twice as wide, its coefficients are twice as large.
+/// They are stored as integrals of 1/rho over an element, relative to its length in x.
 #[derive(Debug)]
 struct Shape {
-    /// The sides of the element, with a longer side near 1.
+    /// The sides of the element, scaled such that the longer one is near 1.
     dx: f64,
     dy: f64,
     /// `q_k(t) = sum_j series[k][j] t^j`.
     series: [[f64; MOST_TERMS + 1]; MOST_TERMS + 1],
-    /// The [`QUADRANTS`] computed so far, row by row.
+    /// The [`QUADRANTS`] that are computed so far, row by row.
     quadrants: [OnceLock<Vec<f64>>; QUADRANTS.len()],
 }
 
-/// A computed shape, and its element.
+/// A computed shape, and the scaled sides of its element.
 struct Computed {
     element: (f64, f64),
     shape: Arc<Shape>,
 }
 
 thread_local! {
-    /// The last shape: computing it takes as long as the rest of the set-up of a small grid, and most programs have one element size.
+    /// The last shape of this thread. Computing a shape takes as long as the rest of the set-up of a small grid, and most programs have one
+    /// element size.
     static LAST: RefCell<Option<Computed>> = const { RefCell::new(None) };
 }
 
 impl Shape {
-    /// The shape of an element, computed once.
+    /// The shape of an element `dx` by `dy`: the last one of this thread if its scaled sides are the same, otherwise a new one.
     fn of(dx: f64, dy: f64) -> Arc<Shape> {
         let (_, unit) = apart(dx.max(dy));
         let [dx, dy] = [dx, dy].map(|side| times_power(side, -unit));
@@ -84,20 +86,21 @@ impl Shape {
             Some(last) if last.element == (dx, dy) => last.shape.clone(),
             last => last.insert(Computed { element: (dx, dy), shape: Arc::new(Shape::new(dx, dy)) }).shape.clone(),
         });
-        // A thread that ends has lost its thread-local memory.
+        // At the end of a thread its thread-local memory may be gone already.
         kept.unwrap_or_else(|_| Arc::new(Shape::new(dx, dy)))
     }
 
+    /// The shape of an element with these scaled sides, without quadrants.
     fn new(dx: f64, dy: f64) -> Shape {
         Shape { dx, dy, series: multipole_series(dx, dy), quadrants: Default::default() }
     }
 
-    /// The coefficients at the offsets `(..end, ky)`, if they are kept.
+    /// The coefficients at the offsets `(0..end, ky)`, if a quadrant with them is kept or worth computing.
     fn kept(&self, end: usize, ky: usize) -> Option<&[f64]> {
         let large_enough = || QUADRANTS.iter().zip(&self.quadrants).filter(|(size, _)| **size >= end.max(ky + 1));
         let known = large_enough().find_map(|(size, quadrant)| Some((size, quadrant.get()?)));
         let (size, quadrant) = known.or_else(|| {
-            // A large quadrant costs more than it saves if only a part of it is needed: on a long grid, or for one coefficient.
+            // A large quadrant costs more than it saves if only a small part of it is needed, for example on a long grid or for one coefficient.
             let worthwhile = |size: usize| size <= SMALL_QUADRANT || end.min(ky + 1) >= size / 4;
             let (size, quadrant) = large_enough().next().filter(|(size, _)| worthwhile(**size))?;
             Some((size, made_once(quadrant, || self.quadrant(*size))))
@@ -105,7 +108,7 @@ impl Shape {
         quadrant.get(ky * size..)?.get(..end)
     }
 
-    /// Computes a quadrant; empty without memory for it.
+    /// Computes the quadrant of offsets below `size`. It is empty if there is no memory for it.
     fn quadrant(&self, size: usize) -> Vec<f64> {
         let mut quadrant = Vec::new();
         if quadrant.try_reserve_exact(size * size).is_ok() {
@@ -136,28 +139,29 @@ impl Shape {
         let (far4, far2) = rest.split_at_mut(s2 - s4);
         let arch = pulp::Arch::new();
         let at = |s: usize| (kx + s) as f64;
-        arch.dispatch(Far::<8> { shape: self, kx: at(s8), y, out: far8 });
-        arch.dispatch(Far::<6> { shape: self, kx: at(s6), y, out: far6 });
-        arch.dispatch(Far::<4> { shape: self, kx: at(s4), y, out: far4 });
-        arch.dispatch(Far::<2> { shape: self, kx: at(s2), y, out: far2 });
+        arch.dispatch(SeriesSegment::<8> { shape: self, kx: at(s8), y, out: far8 });
+        arch.dispatch(SeriesSegment::<6> { shape: self, kx: at(s6), y, out: far6 });
+        arch.dispatch(SeriesSegment::<4> { shape: self, kx: at(s4), y, out: far4 });
+        arch.dispatch(SeriesSegment::<2> { shape: self, kx: at(s2), y, out: far2 });
     }
 }
 
-/// A part of a row by the series with terms `k <= K`. Compiled for the vector instructions of this machine, on which no bit depends.
-struct Far<'a, const K: usize> {
+/// Computes a part of a row by the series with the terms `k <= K`. pulp compiles it for the vector instructions of the machine; the results are
+/// the same, bit for bit, on any machine.
+struct SeriesSegment<'a, const K: usize> {
     shape: &'a Shape,
     kx: f64,
     y: f64,
     out: &'a mut [f64],
 }
 
-impl<const K: usize> pulp::NullaryFnOnce for Far<'_, K> {
+impl<const K: usize> pulp::NullaryFnOnce for SeriesSegment<'_, K> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let Far { shape, kx, y, out } = self;
-        // Copies, as the compiler must know that writes to `out` do not change them.
+        let SeriesSegment { shape, kx, y, out } = self;
+        // Copies, so that the compiler knows that writes to `out` do not change them.
         let (dx, dy, series) = (shape.dx, shape.dy, shape.series);
         let half_diagonal2 = 0.25 * (dx * dx + dy * dy);
         for (k, value) in out.iter_mut().enumerate() {
@@ -179,19 +183,19 @@ impl<const K: usize> pulp::NullaryFnOnce for Far<'_, K> {
 }
 
 impl HalfSpace {
-    /// Coefficients for elements `dx` by `dy`; `compliance` is `1/E* = sum of (1 - nu)/(2 G)` over the bodies.
+    /// The coefficients for elements `dx` by `dy`. `compliance` is `1/E* = sum of (1 - nu)/(2 G)` over the bodies.
     pub fn new(dx: f64, dy: f64, compliance: f64) -> HalfSpace {
         HalfSpace { dx, dy, compliance: compliance / PI, shape: Shape::of(dx, dy) }
     }
 
-    /// The coefficients of the same bodies for another element size. A shape depends on dx/dy alone.
+    /// The coefficients of the same bodies for another element size. The shape is shared if the ratio dx/dy is the same.
     pub fn for_element(&self, dx: f64, dy: f64) -> HalfSpace {
         let shape = if dx / self.dx == dy / self.dy { self.shape.clone() } else { Shape::of(dx, dy) };
         HalfSpace { dx, dy, compliance: self.compliance, shape }
     }
 }
 
-/// The shape follows from the element.
+/// The shape is not compared, because it follows from the element.
 impl PartialEq for HalfSpace {
     fn eq(&self, other: &HalfSpace) -> bool {
         (self.dx, self.dy, self.compliance) == (other.dx, other.dy, other.compliance)
@@ -221,7 +225,8 @@ impl Kernel for HalfSpace {
     }
 }
 
-/// The integral of 1/rho over an element at offset `(kx, ky) >= 0` in elements, which need not be integers.
+/// The integral of 1/rho over an element `dx` by `dy`. Its centre has the offset `(kx, ky) >= 0` from the origin, in elements; offsets need not
+/// be integers.
 pub(crate) fn integral_at((kx, ky): (f64, f64), (dx, dy): (f64, f64)) -> f64 {
     if ky >= 2.0 {
         gauss(ky * dy, dy, |y| line(kx, dx, y))
@@ -235,7 +240,7 @@ pub(crate) fn integral_at((kx, ky): (f64, f64), (dx, dy): (f64, f64)) -> f64 {
     }
 }
 
-/// `integral over |s| <= d/2 of 1/sqrt((k d - s)^2 + y^2) = asinh(X+/y) - asinh(X-/y)`, without cancellation.
+/// `integral over |s| <= d/2 of 1/sqrt((k d - s)^2 + y^2) = asinh(X+/y) - asinh(X-/y)`, computed without cancellation.
 fn line(k: f64, d: f64, y: f64) -> f64 {
     let (plus, minus) = ((k + 0.5) * d, (k - 0.5) * d);
     if k == 0.0 {
@@ -247,7 +252,7 @@ fn line(k: f64, d: f64, y: f64) -> f64 {
     ((d + (plus + minus) * d / (rp + rm)) / near).ln_1p()
 }
 
-/// The polynomials `q_k(t)`: mean over the element of `|s|^n P_n(cos)`, `n = 2k`, in units of the half-diagonal.
+/// The coefficients of the polynomials `q_k(t)`: the means over the element of `|s|^n P_n(cos)`, `n = 2k`, in units of the half-diagonal.
 fn multipole_series(dx: f64, dy: f64) -> [[f64; MOST_TERMS + 1]; MOST_TERMS + 1] {
     let diagonal = dx.hypot(dy);
     let (hx, hy) = (dx / diagonal, dy / diagonal);

@@ -1,12 +1,13 @@
-//! The images of a periodic scene: the contribution of all but the near ones, as a polynomial.
+//! The contribution of the far images of a periodic scene, as a polynomial.
 //!
-//! The sum over the far images is smooth on one period. A polynomial in x^2 and y^2 through 12 x 12 Chebyshev nodes
-//! replaces it, and its means over elements follow. Images are summed in lines along the period, or along the shorter
-//! of two: at the nodes a line is the sum of `1/|x + n L| - 1/|n L|`, whose tail is a multipole series.
+//! The sum of 1/rho over the far images is smooth on one period. It is replaced by a polynomial in x^2 and y^2 through its values at 12 x 12
+//! Chebyshev nodes, and the means of this polynomial over elements are the wanted contribution. Images are summed in lines. With one period the
+//! lines lie along it, with two periods along the shorter one. At a node the sum over a line is that of `1/|x + n L| - 1/|n L|`, whose tail is a
+//! multipole series.
 //!
-//! *Bounded work.* A line of images of period L has waves along it that decay with the distance y as `exp(-2 pi |y|/L)`. Beyond [`FADED`] L
-//! only the mean remains, which has a closed form. So images are summed for nearer rows only, and with two periods in the nearer of the other
-//! lines.
+//! *Bounded work.* The potential of a line of images with the period L varies along the line by waves, which decay with the distance y from the
+//! line as `exp(-2 pi |y|/L)`. Beyond the distance [`FADED`] L only the mean along the line remains, which has a closed form. Therefore images
+//! are summed only for rows nearer than that and, with two periods, only over the nearer of the other lines.
 
 use std::f64::consts::PI;
 
@@ -14,18 +15,18 @@ use super::gauss::rule;
 use super::special::{hurwitz_zeta, EULER_GAMMA};
 use crate::grid::Grid;
 
-/// Chebyshev nodes in each direction. The nearest singularity of the function lies on or beyond the ellipse of sum of semi-axes 4.5 (see
-/// `reach`), so the error is `4.5^-24 = 2e-16`.
+/// The number of Chebyshev nodes in each direction. The nearest singularity of the function lies on or beyond the ellipse whose semi-axes have
+/// the sum 4.5 (see `reach`), so the error is `4.5^-24 = 2e-16`.
 pub(super) const NODES: usize = 12;
-/// The part of its period that a grid of 8 elements covers: half, and half an element.
+/// The half-width of the polynomial, relative to the period: half the period plus half an element of the coarsest grid, which has 8 elements.
 const COVERED_PERIOD: f64 = 0.5626;
-/// Periods beyond which the waves of a line of images vanish: `exp(-2 pi 6) = 4e-17`.
+/// The distance from a line of images, in periods, beyond which its waves vanish: `exp(-2 pi 6) = 4e-17`.
 const FADED: f64 = 6.0;
-/// Ratio of the periods from which waves of other lines vanish at the farthest offset: half the period less half an element, at least a
-/// quarter of the period.
+/// If the longer period is at least this times the shorter one, the waves of other lines vanish at all offsets. The farthest offset is half the
+/// longer period less half an element, so that at least a quarter of this period lies between it and the next line.
 const MUCH_LONGER: f64 = 4.0 * FADED;
 
-/// The direction of the lines in which images are summed, the mean of each in closed form.
+/// The direction of the lines in which images are summed. The mean along each line has a closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Lines {
     /// Along x.
@@ -34,60 +35,67 @@ pub(super) enum Lines {
     Y,
 }
 
-/// The offsets of a grid for which images are summed.
+/// The offsets at which images are summed: those nearer to a line of images than its waves reach.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Near {
-    /// Offsets in x and in y, at least one.
+    /// The numbers of these offsets in x and in y, at least one.
     pub offsets: (usize, usize),
-    /// The element's size, cut off where waves vanish.
+    /// The element's sides. Across lines with waves that vanish, the side is cut off where they vanish.
     pub element: (f64, f64),
 }
 
 impl Near {
-    /// Half the rectangle that these offsets cover.
+    /// The half-lengths of the rectangle that the elements at these offsets cover.
     fn half(&self) -> (f64, f64) {
         ((self.offsets.0 as f64 - 0.5) * self.element.0, (self.offsets.1 as f64 - 0.5) * self.element.1)
     }
 }
 
-/// The grid's lengths.
+/// The lengths of the grid in x and in y.
 pub(super) fn lengths(grid: &Grid) -> (f64, f64) {
     (grid.mx as f64 * grid.dx, grid.my as f64 * grid.dy)
 }
 
-/// The contribution of all far images, per unit strength, as a polynomial on `|x| <= half.0, |y| <= half.1`.
+/// The contribution of all far images to the potential of a unit load, as a polynomial on `|x| <= half.0`, `|y| <= half.1`.
 #[derive(Debug, PartialEq)]
 pub(super) struct Far {
+    /// Whether the scene is periodic in x and in y.
     directions: (bool, bool),
+    /// The lengths of the grid in x and in y.
     lengths: (f64, f64),
+    /// The half-lengths of the rectangle on which the polynomial holds.
     half: (f64, f64),
     /// The direction of the lines.
     pub lines: Lines,
-    /// Whether the waves of all lines vanish within the offsets across them, so that only means remain beyond.
+    /// Whether images are summed only at the offsets that the waves of the line through the load reach. True with one period, and with two if the
+    /// longer is at least [`MUCH_LONGER`] times the shorter one, so that the waves of other lines vanish everywhere. Beyond these offsets only
+    /// the mean along the line remains.
     fades: bool,
-    /// Other lines on either side whose waves do not vanish; the mean of lines beyond is not in the polynomial.
+    /// The number of other lines on either side whose waves do not vanish. The polynomial does not contain the mean of the lines beyond.
     pub other_lines: usize,
-    /// Near images on either side, in x and in y.
+    /// The number of near images on either side, in x and in y.
     pub images: (usize, usize),
-    /// `[j][i]`: the coefficients of `T_i(2 (x/X)^2 - 1) T_j(2 (y/Y)^2 - 1)`.
+    /// The coefficients `[j][i]` of `T_i(2 (x/X)^2 - 1) T_j(2 (y/Y)^2 - 1)`, with X, Y = `half`.
     coefficients: [[f64; NODES]; NODES],
 }
 
-/// Near images on either side: images beyond have no singularity inside the ellipse about `[-here, here]` of semi-axes 2.4 and 2.2
-/// half-lengths.
-fn reach(length: f64, here: f64, across: f64) -> usize {
-    (f64::max(2.4 * here, here + 2.2 * across) / length).ceil() as usize - 1
+/// The number of near images on either side in a direction with the period `length`. In this direction the polynomial holds on `[-half, half]`,
+/// in the other one on `[-half_across, half_across]`. Images beyond the near ones have no singularity inside the ellipse about `[-half, half]` in
+/// the complex plane with semi-axes of 2.4 and 2.2 half-lengths.
+fn reach(length: f64, half: f64, half_across: f64) -> usize {
+    (f64::max(2.4 * half, half + 2.2 * half_across) / length).ceil() as usize - 1
 }
 
-/// The number of offsets `0..count` of elements of size d nearer than `faded`, and the part of an element within.
+/// The number of offsets, out of `0..count`, with elements of size d that reach nearer than `faded`, and the size of an element, cut off at this
+/// distance on both sides.
 fn cut(count: usize, d: f64, faded: f64) -> (usize, f64) {
     let near = (faded / d + 0.5).ceil().min(count as f64) as usize;
     (near.max(1), d.min(2.0 * faded))
 }
 
 impl Lines {
-    /// A pair in x and y as a pair along and across the lines, and back.
-    fn turn<A>(self, (x, y): (A, A)) -> (A, A) {
+    /// Turns a pair (x, y) into a pair (along, across) the lines. It also turns (along, across) into (x, y).
+    fn along_across<A>(self, (x, y): (A, A)) -> (A, A) {
         match self {
             Lines::X => (x, y),
             Lines::Y => (y, x),
@@ -96,36 +104,38 @@ impl Lines {
 }
 
 impl Far {
-    /// The polynomial of a grid and, in periodic directions, of coarser ones: half an element beyond half the period.
+    /// The polynomial for a grid and its coarser grids. In periodic directions it holds up to half the period plus half an element of the
+    /// coarsest grid.
     pub fn new(directions: (bool, bool), grid: &Grid) -> Far {
         let lengths = lengths(grid);
         let lines = if directions.0 && (!directions.1 || lengths.0 <= lengths.1) { Lines::X } else { Lines::Y };
-        let (length, width) = lines.turn(lengths);
+        let (length, width) = lines.along_across(lengths);
         let fades = !(directions.0 && directions.1) || width >= MUCH_LONGER * length;
         let (half, images, coefficients) = ((0.0, 0.0), (0, 0), [[0.0; NODES]; NODES]);
         let mut far = Far { directions, lengths, half, lines, fades, other_lines: 0, images, coefficients };
-        let (own_along, own_across) = lines.turn(far.near(grid).half());
-        let along = own_along.max(COVERED_PERIOD * length);
-        let (mut across, mut near_lines) = (own_across.max(COVERED_PERIOD * width), 0);
+        let (half_along, half_across) = lines.along_across(far.near(grid).half());
+        let along = half_along.max(COVERED_PERIOD * length);
+        let (mut across, mut near_lines) = (half_across.max(COVERED_PERIOD * width), 0);
         if fades {
-            // Across lines coarser elements reach farther, at most to the end.
-            let ((_, count), (_, d)) = (lines.turn(grid.offsets(directions)), lines.turn((grid.dx, grid.dy)));
-            across = own_across.max(f64::min((count as f64 - 0.5) * d, 1.5 * FADED * length));
+            // Elements of coarser grids reach farther across the lines, at most to the end of the grid.
+            let ((_, count), (_, d)) =
+                (lines.along_across(grid.offsets(directions)), lines.along_across((grid.dx, grid.dy)));
+            across = half_across.max(f64::min((count as f64 - 0.5) * d, 1.5 * FADED * length));
         } else {
             near_lines = reach(width, across, along);
             far.other_lines = near_lines.max(((FADED * length + across) / width).ceil() as usize - 1);
         }
         let near = (reach(length, along, across), near_lines);
-        (far.half, far.images) = (lines.turn((along, across)), lines.turn(near));
+        (far.half, far.images) = (lines.along_across((along, across)), lines.along_across(near));
         far.interpolate();
         far
     }
 
-    /// The sum at a place over all but the near images of the lines whose waves do not vanish.
+    /// The sum of 1/rho at `(x, y)` over the images of all lines whose waves do not vanish, without the near images.
     fn value(&self, x: f64, y: f64) -> f64 {
-        let (along, across) = self.lines.turn((x, y));
-        let (near, near_lines) = self.lines.turn(self.images);
-        let (length, width) = self.lines.turn(self.lengths);
+        let (along, across) = self.lines.along_across((x, y));
+        let (near, near_lines) = self.lines.along_across(self.images);
+        let (length, width) = self.lines.along_across(self.lengths);
         let mut sum = 0.0;
         for line in (1..=self.other_lines).rev() {
             for across in [line as f64 * width - across, line as f64 * width + across] {
@@ -139,6 +149,7 @@ impl Far {
         sum + line_of_images(along, across, length, near, width)
     }
 
+    /// Computes the coefficients from the values at the Chebyshev nodes.
     fn interpolate(&mut self) {
         let angle = |i: usize| PI * (i as f64 + 0.5) / NODES as f64;
         let node = |i: usize, half: f64| half * (0.5 * (1.0 + angle(i).cos())).sqrt();
@@ -154,7 +165,7 @@ impl Far {
         }
     }
 
-    /// The offsets of a grid for which images are summed.
+    /// The offsets of `grid` at which images are summed.
     pub fn near(&self, grid: &Grid) -> Near {
         let (row, rows) = grid.offsets(self.directions);
         let mut near = Near { offsets: (row, rows), element: (grid.dx, grid.dy) };
@@ -166,19 +177,19 @@ impl Far {
         near
     }
 
-    /// Whether the polynomial serves a coarser grid as well.
+    /// Whether the polynomial also holds on a coarser grid: its lengths are the same, and its near offsets lie within `half`.
     pub fn serves(&self, grid: &Grid) -> bool {
         let half = self.near(grid).half();
         lengths(grid) == self.lengths && half.0 <= self.half.0 && half.1 <= self.half.1
     }
 
-    /// The polynomial's means over elements at the first offsets: in x and in y.
+    /// The means of the Chebyshev polynomials over the elements at the near offsets: in x and in y.
     pub fn means(&self, near: &Near) -> [impl ExactSizeIterator<Item = [f64; NODES]>; 2] {
         let means = |count: usize, d: f64| (0..count).map(move |k| chebyshev_means(k as f64, d));
         [means(near.offsets.0, near.element.0 / self.half.0), means(near.offsets.1, near.element.1 / self.half.1)]
     }
 
-    /// The polynomial in x, from the means `in_y` of the polynomials in y.
+    /// The coefficients of the polynomial in x for one row of elements. `in_y` has the means of the polynomials in y over this row.
     pub fn along_x(&self, in_y: &[f64; NODES]) -> [f64; NODES] {
         let mut line = [0.0; NODES];
         for (coefficients, t) in self.coefficients.iter().zip(in_y) {
@@ -188,7 +199,7 @@ impl Far {
     }
 }
 
-/// Means of `T_i(2 t^2 - 1)`, i < 12, over `|t - k d| <= d/2`.
+/// The means of `T_i(2 t^2 - 1)`, i < 12, over `|t - k d| <= d/2`, by Gauss-Legendre quadrature.
 fn chebyshev_means(k: f64, d: f64) -> [f64; NODES] {
     let mut means = [0.0; NODES];
     for (node, weight) in rule(9) {
@@ -202,8 +213,9 @@ fn chebyshev_means(k: f64, d: f64) -> [f64; NODES] {
     means
 }
 
-/// The sum of 1/rho over the images of one line but the near ones, at `along` its period of the given length and `across` it. The mean of the
-/// whole sum along the line is `2/L log(W/across)`.
+/// The sum of 1/rho over the images of one line with the period L = `length`, without `near` images on either side, at the distances `along` and
+/// `across` from an image. The sum diverges by a constant, which is chosen such that the whole line has the mean `2/L log(W/across)` along it, W
+/// = `width`. This follows from
 ///
 /// ```text
 /// sum over n of 1/rho_n - [n != 0]/|n L|    has the mean 2/L (log(2 L/across) - gamma)
@@ -211,7 +223,7 @@ fn chebyshev_means(k: f64, d: f64) -> [f64; NODES] {
 fn line_of_images(along: f64, across: f64, length: f64, near: usize, width: f64) -> f64 {
     let harmonic: f64 = (1..=near).rev().map(|n| 1.0 / n as f64).sum();
     let constant = 2.0 / length * ((width / (2.0 * length)).ln() + EULER_GAMMA - harmonic);
-    // Beyond, the terms are a series in (r/(n L))^2 <= 1/100.
+    // From `first_far` on the terms are a series in (r/(n L))^2 <= 1/100.
     let r = along.hypot(across);
     let first_far = near + 10 + (10.0 * r / length).ceil() as usize;
     let mut sum = 0.0;

@@ -5,15 +5,20 @@
 //!        coupling                  kernel               diagonal
 //! ```
 //!
-//! [`Coefficients`] is this sum. The kernel depends on the offset only, so that A is block Toeplitz: it is that of the elastic half-space
-//! ([`HalfSpace`]), of bodies with coatings ([`Coated`]), the sum over all images of a periodic scene ([`Periodic`]), or the caller's table
-//! ([`Table`], without assumptions). [`RowTables`] are Toeplitz in x only: their [`Kernel::at`] is a mean over rows. The diagonal is a compliant
-//! [`Layer`], the coupling that of contact [`Patches`]; a plain scene has neither.
+//! [`Coefficients`] is this sum. The kernel depends only on the offset between the elements, so that A is block Toeplitz. There are these
+//! kernels:
+//!
+//! * [`HalfSpace`]: the elastic half-space;
+//! * [`Coated`] and [`CoatedPeriodic`]: bodies with coatings, without and with two periods;
+//! * [`Periodic`]: the half-space's coefficients, summed over all images of a periodic scene;
+//! * [`Table`]: the caller's coefficients, without any assumption;
+//! * [`RowTables`]: the caller's coefficients for each loaded row. A is Toeplitz in x only, and [`Kernel::at`] is a mean over the rows.
+//!
+//! The diagonal is a compliant [`Layer`], and the coupling holds the factors between contact [`Patches`]. A plain scene has neither.
 
 mod coated;
 mod coefficients;
 mod diagonal;
-mod extremes;
 mod gauss;
 mod given;
 mod half_space;
@@ -25,6 +30,7 @@ mod periodic;
 mod row_tables;
 pub mod special;
 mod table;
+mod table_properties;
 
 pub use coated::{radial, Across, Along, Base, Coat, Coated, CoatedBody, CoatedPeriodic, Radial, Response, Transfer};
 pub use coefficients::Coefficients;

@@ -1,26 +1,26 @@
-//! Coefficients of a scene that is periodic in x, in y or in both: the half-space's, summed over all images.
+//! Coefficients of a scene that is periodic in x, in y or in both: those of the half-space, summed over all images.
 //!
 //! ```text
 //! both          A(k) = sum over n, m of c(kx + n mx, ky + m my) - their mean over the period
 //! x only        A(k) = sum over n of c(kx + n mx, ky), so that its mean over x is c dx dy (2/Lx) log(W/|y|), W = my dy
 //! ```
 //!
-//! *The zero mode.* The sums of 1/rho diverge, by a constant. With two periods the constant is such that the mean displacement is
-//! zero: displacements, and the approach, are relative to the mean plane of the bodies. With one period the bodies are those of plane
-//! strain in the mean, whose displacement diverges at infinity (Johnson, Contact Mechanics, section 2.4): it is set to zero, in the mean over
-//! the period, at the distance W from a load, the grid's width in the direction without a period. Another W would add
-//! `2 c F/L log(W'/W)` to the approach, and nothing to the pressures of a given force.
+//! *The zero mode.* The sums of 1/rho diverge by a constant, which has to be chosen. With two periods it is such that the mean displacement is
+//! zero: displacements and the approach are relative to the mean plane of the bodies. With one period the mean along the period is a problem of
+//! plane strain, whose displacement diverges at infinity (Johnson, Contact Mechanics, section 2.4). Here the mean displacement along the period
+//! is zero at the distance W from a load; W is the grid's width in the direction without a period. Another choice W' would add `2 c F/L
+//! log(W'/W)` to the approach, and nothing to the pressures of a given force.
 //!
-//! These are the exact coefficients for pressures that are constant on elements: with two periods their transform at the wave numbers
-//! q is `sum over the aliases of q of 2 pi c/|q| sinc(qx dx/2) sinc(qy dy/2)`, 0 for q = 0 (Stanley & Kato 1997 take the first alias).
+//! These coefficients are exact for pressures that are constant on elements. With two periods their transform at the wave numbers q is `sum over
+//! the aliases of q of 2 pi c/|q| sinc(qx dx/2) sinc(qy dy/2)`, and 0 for q = 0. (Stanley & Kato 1997 take only the first alias.)
 //!
-//! *Summation.* Near images are summed by the half-space's coefficients, the others by a polynomial (see [`images`](super::images)), which
-//! serves all coarser grids of the same period. At a distance `|y|` of many L a line of images of period L along x has its mean only, over
-//! an element
+//! *Summation.* The contribution of near images is a sum of the half-space's coefficients, that of the others a polynomial (see
+//! [`images`](super::images)), which serves all coarser grids of the same period. At a distance `|y|` of many periods L, a line of images along x
+//! contributes only its mean along x. Integrated over an element, this mean is
 //!
 //! ```text
-//! one period    c dx 2/L  integral of  log(W/|y|) dy                   (W drops out with two)
-//! two periods   c dx 2/L  integral of -log(2 |sin(pi y/Ly)|) dy
+//! one period    c dx 2/L  integral of  log(W/|y|) dy
+//! two periods   c dx 2/L  integral of -log(2 |sin(pi y/Ly)|) dy        (independent of W)
 //! ```
 
 use std::f64::consts::PI;
@@ -34,30 +34,34 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 
-/// The name of this memory in messages.
+/// The name of the memory of coefficients in messages.
 const PERIODIC: &str = "the coefficients of a period";
 
-/// Panels of a period for Gauss integration of functions that are smooth on it: the singularity is six half-panels away.
+/// The number of panels of a period for Gauss quadrature of functions that are smooth on the period. Their singularity is at least six
+/// half-panels away.
 const PANELS: usize = 12;
 
-/// Coefficients of a scene that repeats itself after a grid's length in x, in y or in both.
+/// Coefficients of a scene that repeats itself after the length of a grid in x, in y or in both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Periodic {
     half_space: HalfSpace,
-    /// The periodic directions.
+    /// Whether the scene is periodic in x.
     x: bool,
+    /// Whether the scene is periodic in y.
     y: bool,
+    /// The numbers of elements of the grid in x and in y.
     mx: usize,
     my: usize,
-    /// The far images, shared with coarser grids.
+    /// The polynomial of the far images, shared with coarser grids.
     far: Arc<Far>,
-    /// Coefficients at offsets >= 0, in periodic directions up to half the period; `row` of them in a row.
+    /// The coefficients `[ky][kx]` at offsets >= 0, in periodic directions up to half the period.
     table: Arc<Vec<f64>>,
-    row: usize,
+    /// The number of coefficients in a row of the table.
+    columns: usize,
 }
 
 impl Periodic {
-    /// The coefficients of `grid`, which is one period in the directions that repeat.
+    /// Computes the coefficients of `grid`, which is one period in the periodic directions.
     pub fn new(half_space: HalfSpace, (x, y): (bool, bool), grid: &Grid) -> Result<Periodic> {
         assert!(x || y, "a scene that repeats itself nowhere");
         let far = Arc::new(Far::new((x, y), grid));
@@ -65,9 +69,9 @@ impl Periodic {
     }
 
     fn with_far(half_space: HalfSpace, (x, y): (bool, bool), grid: &Grid, far: Arc<Far>) -> Result<Periodic> {
-        let (row, rows) = grid.offsets((x, y));
-        let mut table = zeros(row * rows, PERIODIC)?;
-        let periodic = Periodic { half_space, x, y, mx: grid.mx, my: grid.my, far, table: Arc::default(), row };
+        let (columns, rows) = grid.offsets((x, y));
+        let mut table = zeros(columns * rows, PERIODIC)?;
+        let periodic = Periodic { half_space, x, y, mx: grid.mx, my: grid.my, far, table: Arc::default(), columns };
         let near = periodic.far.near(grid);
         periodic.add_images(grid, &near, &mut table)?;
         periodic.add_lines(grid, &near, &mut table)?;
@@ -77,7 +81,7 @@ impl Periodic {
         Ok(Periodic { table: Arc::new(table), ..periodic })
     }
 
-    /// Sums images, at near offsets.
+    /// Writes the sums over images to `table` at the near offsets: near images by the half-space's coefficients, far ones by the polynomial.
     fn add_images(&self, grid: &Grid, near: &Near, table: &mut [f64]) -> Result<()> {
         let far = &self.far;
         let half_space = self.half_space.for_element(near.element.0, near.element.1);
@@ -86,7 +90,7 @@ impl Periodic {
         let in_x = collected(means_x, PERIODIC)?;
         let (last_x, last_y) = (far.images.0 * grid.mx, (far.images.1 * grid.my) as i64);
         let mut from_image = zeros(last_x + near.offsets.0, PERIODIC)?;
-        for ((ky, in_y), out) in (0..).zip(means_y).zip(table.chunks_exact_mut(self.row)) {
+        for ((ky, in_y), out) in (0..).zip(means_y).zip(table.chunks_exact_mut(self.columns)) {
             let line = far.along_x(&in_y);
             let at = |in_x: &[f64; NODES]| line.iter().zip(in_x).map(|(a, b)| a * b).sum::<f64>();
             let out = &mut out[..near.offsets.0];
@@ -104,44 +108,45 @@ impl Periodic {
         Ok(())
     }
 
-    /// Adds the means of lines of images: the whole coefficient at far offsets; at near ones the part of an element that was cut off, and
-    /// the change by a second period.
+    /// Adds the means of lines of images. At far offsets this is the whole coefficient. At near ones it is the part of an element that was cut
+    /// off, and the change by a second period.
     fn add_lines(&self, grid: &Grid, near: &Near, table: &mut [f64]) -> Result<()> {
         let (length_x, length_y) = lengths(grid);
-        let (row, c) = (self.row, self.half_space.compliance);
+        let (columns, c) = (self.columns, self.half_space.compliance);
         let along_x = self.far.lines == Lines::X;
         let (count, d, cut, near, length, width) = match self.far.lines {
-            Lines::X => (table.len() / row, grid.dy, near.element.1, near.offsets.1, length_x, length_y),
-            Lines::Y => (row, grid.dx, near.element.0, near.offsets.0, length_y, length_x),
+            Lines::X => (table.len() / columns, grid.dy, near.element.1, near.offsets.1, length_x, length_y),
+            Lines::Y => (columns, grid.dx, near.element.0, near.offsets.0, length_y, length_x),
         };
         let other_lines = (self.x && self.y).then_some(self.far.other_lines);
         let line = Line { d, cut, near, width, other_lines };
         let strength = 2.0 * c * (grid.dx * grid.dy / d) / length;
         let means = collected((0..count).map(|k| strength * line.beyond(k)), PERIODIC)?;
         for (i, value) in table.iter_mut().enumerate() {
-            *value += means[if along_x { i / row } else { i % row }];
+            *value += means[if along_x { i / columns } else { i % columns }];
         }
         Ok(())
     }
 
-    /// Two periods: subtracts the mean of coefficients at offsets up to half of them.
+    /// Subtracts the mean over two periods from a table of the coefficients at offsets up to half of both periods.
     pub fn remove_mean(table: &mut [f64], grid: &Grid) {
-        let row = grid.mx / 2 + 1;
+        let columns = grid.mx / 2 + 1;
         // Offsets k and m - k share an entry, except 0 and m/2.
         let weight = |k: usize, m: usize| if k == 0 || 2 * k == m { 1.0 } else { 2.0 };
-        let weights = |i: usize| weight(i % row, grid.mx) * weight(i / row, grid.my);
+        let weights = |i: usize| weight(i % columns, grid.mx) * weight(i / columns, grid.my);
         let sum: f64 = table.iter().enumerate().map(|(i, value)| weights(i) * value).sum();
         let mean = sum / (grid.mx * grid.my) as f64;
         table.iter_mut().for_each(|value| *value -= mean);
     }
 
-    /// The offset up to half a period of m elements with the same coefficients.
+    /// The offset between 0 and half a period of m elements that has the same coefficients as the offset k.
     pub fn folded(k: i64, m: usize) -> usize {
         let k = k.unsigned_abs() as usize % m;
         k.min(m - k)
     }
 
-    /// The coefficients of a coarser grid. With an odd count it is longer by an element, which suffices for a start.
+    /// The coefficients of a coarser grid. If the number of fine elements is odd, the coarse grid is longer than the period by one fine element.
+    /// Its coefficients are then those of this longer period, which suffices for an initial guess.
     pub fn coarsened(&self, coarse: &Grid) -> Result<Periodic> {
         let directions = (self.x, self.y);
         let far = if self.far.serves(coarse) { self.far.clone() } else { Arc::new(Far::new(directions, coarse)) };
@@ -156,7 +161,7 @@ impl Kernel for Periodic {
             true => Periodic::folded(k, m),
             false => (k.unsigned_abs() as usize).min(m - 1),
         };
-        self.table[folded(ky, self.y, self.my) * self.row + folded(kx, self.x, self.mx)]
+        self.table[folded(ky, self.y, self.my) * self.columns + folded(kx, self.x, self.mx)]
     }
 
     fn repeats(&self, grid: &Grid) -> (bool, bool) {
@@ -190,38 +195,41 @@ impl Kernel for Periodic {
     }
 }
 
-/// The mean of a line of images across it, in units of 2 c/L: elements of size `d`, of which `cut` was summed at `near` offsets.
+/// The mean of a line of images along the line, as a function of the offset across the line: integrated over an element, in units of 2 c/L.
 struct Line {
+    /// The element's side across the line.
     d: f64,
+    /// The part of this side on which images were summed.
     cut: f64,
+    /// The number of offsets at which images were summed.
     near: usize,
-    /// W, and the period across the line if there is one.
+    /// W; with two periods the period across the line.
     width: f64,
-    /// With two periods: other lines on either side that are already summed.
+    /// With two periods: the number of other lines on either side that are in the sum already.
     other_lines: Option<usize>,
 }
 
 impl Line {
-    /// The term to be added at offset k.
+    /// The term that is missing in the coefficient at offset k.
     fn beyond(&self, k: usize) -> f64 {
         let (d, y) = (self.d, k as f64 * self.d);
         let line = match k {
             0 => 2.0 * (self.log_integral(0.5 * d) - self.log_integral(0.5 * self.cut)),
             k if k < self.near => 0.0,
             1 => self.log_integral(1.5 * d) - self.log_integral(0.5 * d),
-            // Without cancellation; the singularity is four half-elements away.
+            // The quadrature has no cancellation, and the singularity is at least four half-elements away.
             _ => gauss(y, d, |y| (self.width / y).ln()),
         };
         line - self.other_lines.map_or(0.0, |summed| self.of_other_lines(y, summed))
     }
 
-    /// `integral from 0 to y of log(W/y)`.
+    /// `integral from 0 to y of log(W/t) dt`.
     fn log_integral(&self, y: f64) -> f64 {
         y * ((self.width / y).ln() + 1.0)
     }
 
-    /// The integral of `log(2 sin(pi y/Ly)/(y/W))` over an element, W = Ly, without the other lines that are summed already: each pair
-    /// of them is a factor `1 - (y/(m Ly))^2` of the sine.
+    /// The integral of `log(2 sin(pi y/Ly)/(y/W))` over an element, W = Ly: the mean of all other lines. The lines that are in the sum already
+    /// are left out; each pair of them is a factor `1 - (y/(m Ly))^2` of the sine.
     fn of_other_lines(&self, centre: f64, summed: usize) -> f64 {
         let panels = (PANELS as f64 * self.d / self.width).ceil();
         let step = self.d / panels;

@@ -168,9 +168,9 @@ impl Solver {
         let lent = Lent::new(&mut solver, &mut self.state);
         let (contact, approach) = (&lent.state.contact[..], lent.state.approach);
         let from = match guess {
-            _ if goes_on => Some(adhesion::State { pressure: None, contact, approach }),
+            _ if goes_on => Some(adhesion::InitialState { pressure: None, contact, approach }),
             Some(Guess { pressure, contact }) => {
-                Some(adhesion::State { pressure: Some(pressure), contact, approach: lowest })
+                Some(adhesion::InitialState { pressure: Some(pressure), contact, approach: lowest })
             }
             None => None,
         };

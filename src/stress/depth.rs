@@ -1,4 +1,4 @@
-//! The results at one depth.
+//! The results at one depth, and their computation.
 
 use super::loads::Loads;
 use super::product::{Product, Workspace};
@@ -10,7 +10,7 @@ use crate::memory::zeros;
 /// The results wanted at each depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
-    /// Components xx, yy, zz, xy, xz, yz.
+    /// Which of the components xx, yy, zz, xy, xz, yz are wanted.
     pub components: [bool; 6],
     /// The von Mises stress.
     pub von_mises: bool,
@@ -23,7 +23,7 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// Scalars need all components.
+    /// The components that have to be computed. Any result except single components needs all of them.
     fn needs(&self) -> [bool; 6] {
         match self.von_mises || self.needs_principal() {
             true => [true; 6],
@@ -31,15 +31,16 @@ impl Wanted {
         }
     }
 
+    /// Whether principal stresses have to be computed.
     fn needs_principal(&self) -> bool {
         self.maximum_shear || self.principal || self.directions
     }
 }
 
-/// The stresses at one depth, `[my][mx]` each; empty: not wanted.
+/// The results at one depth. Each array is `[my][mx]`, or empty if it is not needed.
 #[derive(Clone, Debug, Default)]
 pub struct Depth {
-    /// xx, yy, zz, xy, xz, yz; all of them if any scalar is wanted.
+    /// The components xx, yy, zz, xy, xz, yz. All are present if any other result is wanted.
     pub stress: [Vec<f64>; 6],
     /// The von Mises stress.
     pub von_mises: Vec<f64>,
@@ -51,21 +52,21 @@ pub struct Depth {
     pub directions: [Vec<[f64; 3]>; 3],
 }
 
-/// The largest value of a field, and its place.
+/// The largest value of a result over all depths, and its position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Maximum {
     /// The value.
     pub value: f64,
     /// The index of the depth.
     pub depth: usize,
-    /// The index in x of the element above.
+    /// The index in x of the element above the position.
     pub ix: usize,
-    /// The index in y of the element above.
+    /// The index in y of the element above the position.
     pub iy: usize,
 }
 
 impl Maximum {
-    /// Takes the largest of `values` at a depth, if it is larger than any before. With patches only values below their elements count.
+    /// Updates the `known` maximum by the `values` at one depth. With patches, only values below elements of patches count.
     pub fn join(known: &mut Option<Maximum>, values: &[f64], depth: usize, (grid, loads): (&Grid, &Loads<'_>)) {
         let counts = loads.counted();
         for (i, &value) in values.iter().enumerate().filter(|(i, _)| counts(*i)) {
@@ -76,13 +77,16 @@ impl Maximum {
     }
 }
 
-/// The results at one depth, and the workspace of their computation.
+/// The results at one depth, and the memory for their computation.
 pub(super) struct DepthMemory {
+    /// The memory of the products.
     workspace: Workspace,
+    /// The results.
     pub depth: Depth,
 }
 
 impl DepthMemory {
+    /// Allocates the memory for the wanted results.
     pub fn new(product: &Product<'_>, wanted: &Wanted) -> Result<DepthMemory> {
         let n = product.body.grid.len();
         let field = |needed: bool| zeros(if needed { n } else { 0 }, "the stresses of a depth");
@@ -102,7 +106,7 @@ impl DepthMemory {
         Ok(DepthMemory { workspace: product.workspace(wanted.needs())?, depth })
     }
 
-    /// Computes all wanted stresses at depth z.
+    /// Computes all wanted results at the depth z.
     pub fn compute(&mut self, product: &Product<'_>, wanted: &Wanted, z: f64) {
         product.enter(z, &mut self.workspace);
         for (c, out) in self.depth.stress.iter_mut().enumerate() {

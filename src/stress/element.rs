@@ -1,7 +1,7 @@
-//! Stresses of a uniform load on one rectangular element, in closed form: for places near the element.
+//! Stresses by a uniform load on one rectangular element, in closed form. They are used near the element.
 //!
 //! V is the integral of 1/R over the element; C and W are potentials with `C_z = V` and `W_z = C` (Johnson, Contact Mechanics, section 3.2).
-//! Suffixes are derivatives, and `h = 1 - 2 nu`. The stresses by a unit load are `1/(2 pi)` times:
+//! Subscripts denote derivatives, and `h = 1 - 2 nu`. The stresses by a unit load are `1/(2 pi)` times
 //!
 //! ```text
 //!       pressure                     traction in x
@@ -13,7 +13,8 @@
 //! yz    -z V_yz                      -z V_xy
 //! ```
 //!
-//! A derivative is the corner difference `f(X+, Y+) - f(X+, Y-) - f(X-, Y+) + f(X-, Y-)`, `X+- = x +- dx/2`, `R^2 = X^2 + Y^2 + z^2`, of
+//! Each derivative is the corner difference `f(X+, Y+) - f(X+, Y-) - f(X-, Y+) + f(X-, Y-)` of a function f, with `X+- = x +- dx/2` and `Y+- = y
+//! +- dy/2`. With `R^2 = X^2 + Y^2 + z^2` the functions are
 //!
 //! ```text
 //! V_x   ln(R + Y)        V_xx  X/(R (R + Y))    C_xx   atan2(X Y, X^2 + z^2 + z R)    C_xxy  X/(R (R + z))    W_xxy  -X/(R + z)
@@ -22,18 +23,18 @@
 //! V_xy  1/R              V_yz  z/(R (R + X))    V_zz   -(V_xx + V_yy)                 W_xxx  -(W_xyy + V_x)
 //! ```
 //!
-//! The difference of two logarithms is the logarithm of a quotient, and `R + Y = (X^2 + z^2)/(R - Y)` for Y < 0, so that nothing cancels near
-//! the element. At z = 0 only the edges are special: stresses by tractions are infinite there.
+//! The difference of two logarithms is computed as the logarithm of a quotient, and `R + Y` as `(X^2 + z^2)/(R - Y)` for Y < 0, so that there is
+//! no cancellation near the element. At z = 0 only the edges of the element are singular: stresses by tractions are infinite there.
 
 use std::f64::consts::PI;
 
 use super::body::{Body, Loaded};
 use super::tensor::Tensor;
 
-/// The values at the two edges in one direction, `-` first.
+/// Two values, at the lower and at the upper edge of an element in one direction.
 type Edges = [f64; 2];
 
-/// The derivatives of the potentials in the stresses.
+/// The derivatives of the potentials V, C and W that the stresses contain, such as `vxz` for V_xz.
 #[derive(Default)]
 struct Potentials {
     vx: f64,
@@ -52,7 +53,7 @@ struct Potentials {
     wxyy: f64,
 }
 
-/// The stresses at `(x, y, z)` from the centre of an element `dx` by `dy`, by the unit loads in `loaded`.
+/// The stresses at the position `(x, y, z)` relative to the centre of an element `dx` by `dy`, by each unit load that is set in `loaded`.
 pub fn stresses(body: &Body, loaded: Loaded, (x, y, z): (f64, f64, f64), (dx, dy): (f64, f64)) -> [Tensor; 3] {
     let edges = |x: f64, d: f64| [x - 0.5 * d, x + 0.5 * d];
     let f = potentials(edges(x, dx), edges(y, dy), z);
@@ -84,6 +85,7 @@ pub fn stresses(body: &Body, loaded: Loaded, (x, y, z): (f64, f64, f64), (dx, dy
     out
 }
 
+/// The derivatives of the potentials. `x` and `y` have the position relative to the edges.
 fn potentials(x: Edges, y: Edges, z: f64) -> Potentials {
     let r = |i: usize, j: usize| x[i].hypot(y[j]).hypot(z);
     let r = [[r(0, 0), r(0, 1)], [r(1, 0), r(1, 1)]];
@@ -102,7 +104,7 @@ fn potentials(x: Edges, y: Edges, z: f64) -> Potentials {
         let over = sign / (r + z);
         f.wxxy -= x * over;
         f.wxyy -= y * over;
-        // All other derivatives have the factor z in the stresses.
+        // In the stresses, all other derivatives are multiplied by z.
         if z > 0.0 {
             let over_r = sign / r;
             let (to_y, to_x) = (over_r * inverse_of_sum(r, y, x2 + z2), over_r * inverse_of_sum(r, x, y2 + z2));
@@ -118,7 +120,7 @@ fn potentials(x: Edges, y: Edges, z: f64) -> Potentials {
     f
 }
 
-/// `ln(R+ + a+) - ln(R- + a-)`; `rest = R^2 - a^2` is the same for both.
+/// `ln(R+ + a+) - ln(R- + a-)` for the coordinates a at both edges and their R. `rest = R^2 - a^2` is the same at both edges.
 fn log_difference([minus, plus]: Edges, [r_minus, r_plus]: Edges, rest: f64) -> f64 {
     if minus >= 0.0 {
         ((r_plus + plus) / (r_minus + minus)).ln()
@@ -129,7 +131,7 @@ fn log_difference([minus, plus]: Edges, [r_minus, r_plus]: Edges, rest: f64) -> 
     }
 }
 
-/// `1/(R + a)`, with `rest = R^2 - a^2`.
+/// `1/(R + a)` without cancellation. `rest` is `R^2 - a^2`.
 fn inverse_of_sum(r: f64, a: f64, rest: f64) -> f64 {
     if a >= 0.0 {
         1.0 / (r + a)

@@ -1,12 +1,11 @@
-//! The kernels of one depth: stresses at offsets `(kx, ky) >= 0` by unit loads on one element.
+//! The kernels of one depth: stresses at the offsets `(kx, ky) >= 0` by a unit load on one element.
 //!
-//! By the distance between the centres, in longer sides of an element:
+//! The method depends on the distance from the centre of the loaded element, in longer sides of an element:
 //!
-//! * below [`CLOSED_FORM_DISTANCE`] the closed form of [`element`](super::element), whose corner differences lose
-//!   digits with the distance;
-//! * below [`LEAST_DISTANCE`] point forces at 4 x 4 Gauss points of the element;
-//! * beyond, point forces at the centres of the elements, from which means over elements follow (see [`means`](crate::influence::means)):
-//!   one evaluation per element, and no cancellation at any distance.
+//! * below [`CLOSED_FORM_DISTANCE`], the closed form of [`element`](super::element), whose corner differences lose digits with the distance;
+//! * below [`LEAST_DISTANCE`], concentrated forces at 4 x 4 Gauss points of the element;
+//! * beyond, concentrated forces at the centres of elements, from which means over elements follow (see [`means`](crate::influence::means)). This
+//!   takes one evaluation per element, without cancellation at any distance.
 
 use super::body::{Body, Loaded};
 use super::element;
@@ -17,10 +16,10 @@ use crate::influence::means::{in_x, in_y, HALO, LEAST_DISTANCE, ROWS};
 use crate::influence::rule;
 use crate::memory::zeros;
 
-/// The closed form is used up to this distance.
+/// The distance below which the closed form is used, in longer sides of an element.
 const CLOSED_FORM_DISTANCE: f64 = 12.0;
 
-/// Whether the kernel of a load and component is odd in x and in y.
+/// Whether the kernel of a load and a stress component is odd in x and in y.
 pub fn is_odd(load: usize, component: usize) -> (bool, bool) {
     let (x, y) = match component {
         0..=2 => (false, false),
@@ -31,47 +30,49 @@ pub fn is_odd(load: usize, component: usize) -> (bool, bool) {
     (x != (load == 1), y != (load == 2))
 }
 
-/// The requested kernels.
+/// The kernels that are wanted, and the number of offsets.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked {
-    /// The loads.
+    /// The loads that act.
     pub loaded: Loaded,
-    /// The components.
+    /// The stress components that are wanted.
     pub components: [bool; 6],
-    /// The number of offsets from 0 in x and in y.
+    /// The number of offsets, from 0 on, in x and in y.
     pub offsets: (usize, usize),
 }
 
 impl Asked {
-    /// The load and component of each kernel.
+    /// The pairs (load, component) of all kernels, in the order in which they are stored.
     pub fn list(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let loads = (0..3).filter(|&load| self.loaded[load]);
         loads.flat_map(|load| (0..6).filter(|&c| self.components[c]).map(move |c| (load, c)))
     }
 
-    /// Number of kernels.
+    /// The number of kernels.
     pub fn count(&self) -> usize {
         self.list().count()
     }
 
-    /// The position of a kernel in the list, if it was requested.
+    /// The position of a kernel in the list; `None` if it is not wanted.
     pub fn place(&self, load: usize, component: usize) -> Option<usize> {
         self.list().position(|of| of == (load, component))
     }
 }
 
-/// Kernels of one depth, and the memory for their computation.
+/// The kernels of one depth, and the memory for their computation.
 pub struct Kernels {
+    /// The kernels that are wanted.
     asked: Asked,
-    /// The table `[ky][kx]` of each requested kernel.
+    /// The tables of all kernels, `[kernel][ky][kx]`.
     tables: Vec<f64>,
-    /// Point forces along one row, per kernel, and means in x of the last rows.
+    /// The stresses by concentrated forces along one row, `[kernel][place]`.
     points: Vec<f64>,
+    /// The means in x of the last [`ROWS`] rows, `[kernel][row % ROWS][kx]`.
     means: Vec<f64>,
 }
 
 impl Kernels {
-    /// Allocates memory for the requested kernels.
+    /// Allocates memory for the wanted kernels.
     pub fn new(asked: Asked) -> Result<Kernels> {
         let (what, (mx, my)) = ("the kernels of a depth", asked.offsets);
         Ok(Kernels {
@@ -82,18 +83,18 @@ impl Kernels {
         })
     }
 
-    /// The table of a load and component, if it was requested.
+    /// The table `[ky][kx]` of a kernel; `None` if it is not wanted.
     pub fn table(&self, load: usize, component: usize) -> Option<&[f64]> {
         let n = self.asked.offsets.0 * self.asked.offsets.1;
         self.asked.place(load, component).map(|k| &self.tables[k * n..(k + 1) * n])
     }
 
-    /// Computes all kernels at depth z, in units of `body.unit()`.
+    /// Computes all kernels at the depth z, in units of `body.unit()`.
     pub fn compute(&mut self, body: &Body, z: f64) {
         self.combine(body, &[(z, 1.0)]);
     }
 
-    /// Computes weighted sums of the kernels of some depths, in units of `body.unit()`.
+    /// Computes weighted sums of kernels at several depths. `depths` has pairs of a depth, in units of `body.unit()`, and its weight.
     pub fn combine(&mut self, body: &Body, depths: &[(f64, f64)]) {
         self.fill_far(body, depths);
         let least = depths.iter().fold(f64::INFINITY, |least, (z, _)| z.min(least));
@@ -102,7 +103,7 @@ impl Kernels {
         }
     }
 
-    /// Means of point forces, at all offsets.
+    /// Fills the tables at all offsets with means from concentrated forces.
     fn fill_far(&mut self, body: &Body, depths: &[(f64, f64)]) {
         let ((mx, my), halo) = (self.asked.offsets, HALO as i64);
         for row in 0..my + 2 * HALO {
@@ -120,7 +121,7 @@ impl Kernels {
         }
     }
 
-    /// Point forces at offsets `-HALO..` of one row.
+    /// Computes the stresses by concentrated forces at the offsets `-HALO..` of row ky.
     fn fill_points(&mut self, body: &Body, ky: i64, depths: &[(f64, f64)]) {
         let ((dx, dy), width) = (body.element(), width(self.asked.offsets.0));
         let y = ky as f64 * dy;
@@ -136,7 +137,7 @@ impl Kernels {
         }
     }
 
-    /// Gauss points and the closed form, at the offsets that are near at the least depth.
+    /// Replaces the values at offsets that are near at the smallest depth, `least`, by those of Gauss points and of the closed form.
     fn fill_near(&mut self, body: &Body, depths: &[(f64, f64)], least: f64) {
         let ((mx, my), (dx, dy)) = (self.asked.offsets, body.element());
         // The number of offsets in x with a distance below `distance`.
@@ -171,6 +172,7 @@ impl Kernels {
         }
     }
 
+    /// Adds `value(load, component)` to each table at one offset.
     fn add(&mut self, (kx, ky): (usize, usize), value: impl Fn(usize, usize) -> f64) {
         let (mx, my) = self.asked.offsets;
         for ((load, c), table) in self.asked.list().zip(self.tables.chunks_exact_mut(mx * my)) {
@@ -179,12 +181,13 @@ impl Kernels {
     }
 }
 
-/// The length of a row with its halo, rounded up to whole lanes.
+/// The number of places of a row with its halo, rounded up to whole lanes.
 fn width(mx: usize) -> usize {
     (mx + 2 * HALO).next_multiple_of(LANES)
 }
 
-/// Stresses by uniform loads on an element, at places one element apart in x, by point forces at Gauss points.
+/// Stresses by unit loads on an element, by concentrated forces at its Gauss points. The positions are `(x, y, z)` and the following ones, one
+/// element apart in x.
 pub(super) fn by_gauss(body: &Body, loaded: Loaded, (x, y, z): (f64, f64, f64)) -> Values {
     let (dx, dy) = body.element();
     let mut values: Values = [[[0.0; LANES]; 6]; 3];
@@ -197,7 +200,7 @@ pub(super) fn by_gauss(body: &Body, loaded: Loaded, (x, y, z): (f64, f64, f64)) 
     values
 }
 
-/// Stresses by unit loads on an element, at one place.
+/// Stresses by unit loads on an element, at one position `(x, y, z)` relative to its centre.
 pub(super) fn at(body: &Body, loaded: Loaded, (x, y, z): (f64, f64, f64)) -> [[f64; 6]; 3] {
     if x * x + y * y + z * z < CLOSED_FORM_DISTANCE * CLOSED_FORM_DISTANCE {
         return element::stresses(body, loaded, (x, y, z), body.element());

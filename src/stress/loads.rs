@@ -1,4 +1,4 @@
-//! The loads on the surface of a body.
+//! The loads on the surface of a half-space.
 
 use super::body::Loaded;
 use crate::effects::Patches;
@@ -7,34 +7,36 @@ use crate::error::{finite, invalid, require, Result};
 use crate::grid::{check_values, Grid};
 use crate::memory::collected;
 
-/// Loads below this have finite stresses. Stresses by a load of 1 are below 2^11, since they grow with a logarithm towards edges.
+/// The bound on loads, below which stresses are finite. The stresses by a load of 1 are below 2^11, since they grow with a logarithm towards
+/// edges.
 const LARGEST: f64 = 1e304;
 
-/// Pressures and tractions, `[my][mx]`, each optional. Tractions act on the body considered, in the directions of x and y.
+/// The pressures and tractions on the elements, `[my][mx]`, each optional. Tractions are those that act on the body considered, in the directions
+/// of x and y.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Loads<'a> {
-    /// p: positive presses.
+    /// The pressure p, positive in compression.
     pub pressure: Option<&'a [f64]>,
-    /// qx.
+    /// The traction qx in x.
     pub traction_x: Option<&'a [f64]>,
-    /// qy.
+    /// The traction qy in y.
     pub traction_y: Option<&'a [f64]>,
-    /// Contact patches: below an element of one patch, the loads of another count times the factor between both. Elements of no patch are stressed
-    /// by all loads in full.
+    /// The contact patches. In the stresses below an element of one patch, the loads on another patch are multiplied by the factor between the
+    /// two patches. Elements that belong to no patch are stressed by all loads in full.
     pub patches: Option<Patches<'a>>,
 }
 
-/// Elements stressed by the same loads: those of a patch; all, or those of no patch.
+/// A set of elements below which the same loads count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// Elements with unscaled loads.
+    /// The elements below which all loads count in full: those of no patch, or all elements if patches are not coupled by factors.
     All,
-    /// The elements of a patch.
+    /// The elements of the patch with this number.
     Patch(usize),
 }
 
 impl Part {
-    /// The part of an element.
+    /// The part to which element i belongs.
     pub(super) fn of(patches: &Patches<'_>, i: usize) -> Part {
         match patches.patch[i] {
             NO_PATCH => Part::All,
@@ -44,34 +46,35 @@ impl Part {
 }
 
 impl<'a> Loads<'a> {
-    /// Pressures alone.
+    /// A pressure without tractions.
     pub fn pressure(pressure: &'a [f64]) -> Loads<'a> {
         Loads { pressure: Some(pressure), ..Loads::default() }
     }
 
-    /// Pressure and both tractions.
+    /// The pressure and both tractions, in this order.
     pub(super) fn list(&self) -> [Option<&'a [f64]>; 3] {
         [self.pressure, self.traction_x, self.traction_y]
     }
 
+    /// Whether each load is given.
     pub(super) fn loaded(&self) -> Loaded {
         self.list().map(|load| load.is_some())
     }
 
-    /// The parts of the grid with separate loads.
+    /// The parts of the grid that have elements.
     pub(super) fn parts(&self) -> Vec<Part> {
         let Some(patches) = self.coupled() else { return vec![Part::All] };
         let has = |part: &Part| (0..patches.patch.len()).any(|i| Part::of(patches, i) == *part);
         [Part::All].into_iter().chain((0..patches.count).map(Part::Patch)).filter(has).collect()
     }
 
-    /// Whether the stresses below an element count for the largest ones. With patches, only those below an element of a patch count.
+    /// Tells whether the stresses below element i count for the largest ones. With coupled patches, only those below elements of patches count.
     pub fn counted(&self) -> impl Fn(usize) -> bool + '_ {
         let patches = self.coupled();
         move |i| patches.is_none_or(|patches| Part::of(patches, i) != Part::All)
     }
 
-    /// The factors of the loads on elements below a part.
+    /// The factor of the load on element j for the stresses below a part.
     pub(super) fn factors(&self, part: Part) -> impl Fn(usize) -> f64 + '_ {
         let patches = self.coupled();
         move |j| match (patches, part) {
@@ -80,17 +83,18 @@ impl<'a> Loads<'a> {
         }
     }
 
-    /// The patches, unless all factors are 1.
+    /// The patches; `None` if there are none or all factors are 1.
     pub(super) fn coupled(&self) -> Option<&Patches<'a>> {
         self.patches.as_ref().filter(|patches| patches.factors.iter().any(|factor| *factor != 1.0))
     }
 
-    /// The loads on a part: each load times the factor of its patch.
+    /// The loads for the stresses below a part: each times its factor.
     pub(super) fn on(&self, part: Part, load: &[f64]) -> Result<Vec<f64>> {
         let factor = self.factors(part);
         Ok(collected(load.iter().enumerate().map(|(i, load)| factor(i) * load), "the loads of a patch")?)
     }
 
+    /// Refuses loads of another size than the grid, loads that are not finite or too large, invalid patches, and a call without loads.
     pub(super) fn check(&self, grid: &Grid) -> Result<()> {
         for (name, load) in ["pressure", "traction_x", "traction_y"].into_iter().zip(self.list()) {
             let Some(load) = load else { continue };
@@ -108,7 +112,7 @@ impl<'a> Loads<'a> {
         }
     }
 
-    /// A power of two near the largest load: stresses of loads of about 1 neither overflow nor underflow.
+    /// A power of two near the largest load. The loads are divided by it, so that stresses neither overflow nor underflow.
     pub(super) fn scale(&self) -> f64 {
         let values = self.list().into_iter().flatten().flatten();
         let largest = values.fold(0.0, |largest: f64, value| largest.max(value.abs()));

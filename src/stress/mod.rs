@@ -1,27 +1,32 @@
-//! Stresses below the surface of a half-space, from the pressures and tractions on its elements.
+//! Stresses below the surface of a half-space, from the pressures and tractions on the elements of its surface.
 //!
-//! Six components, positive in tension, at the centres of the elements and any depth `z >= 0` below them, z into the body considered; the
-//! pressure p and the tractions `(qx, qy)` that act ON this body are constant on each element:
+//! The stress tensor has six components, positive in tension. They are computed below the centres of the elements, at any depth `z >= 0`; the z
+//! axis points into the body considered. The pressure p and the tractions `(qx, qy)` that act ON this body are constant on each element:
 //!
 //! ```text
 //! stress_I(z) = sum over J of  K_p(I - J, z) p_J + K_x(I - J, z) qx_J + K_y(I - J, z) qy_J
 //! szz = -p,  sxz = -qx,  syz = -qy    at z = 0
 //! ```
 //!
-//! The kernels depend on the Poisson ratio, not on the shear modulus. Near its element a kernel has a closed form (`element`). Far away this form
-//! suffers from cancellation, and point forces are used (`point_force`); `kernels` combines both. At each depth sums over elements are products
-//! by FFT (`product`). Each kernel is even or odd in x and in y, so its symbol is real or imaginary, and one quadrant is tabulated. At any other
-//! point the sum is direct (`points`).
+//! The kernels depend on the Poisson ratio, not on the shear modulus. There are two ways to compute them, which `kernels` combines:
 //!
-//! Contact patches coupled by factors have one product each (`loads`).
+//! * near the loaded element a closed form (`element`);
+//! * far from it, where the closed form suffers from cancellation, concentrated forces (`point_force`).
 //!
-//! For periodic loads kernels are sums over waves (`periodic`).
+//! At each depth the sums over elements are products by FFT (`product`). Each kernel is even or odd in x and in y, so that its symbol is real or
+//! imaginary, and only one quadrant is tabulated. At arbitrary points the sums are computed directly (`points`).
 //!
-//! Threads work on one depth each. No array of the size of the grid is kept per depth: each depth is handed over when done.
+//! If contact patches are coupled by factors, each patch has its own loads and its own products (`loads`).
+//!
+//! For periodic loads the kernels are sums over waves (`periodic`).
+//!
+//! Each thread computes one depth at a time. The results of a depth are passed to the caller when they are complete, so that the memory does not
+//! grow with the number of depths.
 
 mod body;
 mod depth;
 mod element;
+mod exponential;
 mod kernels;
 mod loads;
 mod of_scene;
@@ -49,13 +54,14 @@ use depth::DepthMemory;
 use periodic::Waves;
 use product::Product;
 
-/// The stresses at all depths: calls `each(k, depth)` with the wanted stresses at `depths[k]`, in order, on the calling thread, and then `progress`,
-/// for which a cycle is a depth. True: all depths are done; false: the caller cancelled.
+/// Computes the wanted stresses at all `depths`. For each depth, in order, it calls `each(k, depth)` with the stresses at `depths[k]` and then
+/// `progress`, for which a depth counts as a cycle. Both are called on the calling thread. Returns true if all depths are done, false if the
+/// caller cancelled.
 ///
-/// # Errors
-/// `NotFinite`: a load or a depth is not finite; `InvalidArgument`: an array of another size than the grid, no load, a negative depth, a
-/// Poisson ratio out of range; `Unsupported`: a period with patches, or with very slender elements and a depth of less than their longer side;
-/// `OutOfMemory`.
+/// * `NotFinite`: a load or a depth is not finite.
+/// * `InvalidArgument`: an array has another size than the grid, no load is given, a depth is negative, or the Poisson ratio is out of range.
+/// * `Unsupported`: a period with patches, or a period with very slender elements and a depth of less than their longer side.
+/// * `OutOfMemory`.
 pub fn subsurface_stress(
     body: &Body,
     loads: &Loads<'_>,

@@ -1,4 +1,4 @@
-//! The half-space and the loads for the stresses of a scene, with its effects.
+//! The half-space and the loads for the stresses in a body of a scene, with the scene's effects.
 
 use super::{Body, Loads};
 use crate::effects::Patches;
@@ -6,11 +6,11 @@ use crate::effects::{self, Stresses};
 use crate::error::{invalid, Error, Result};
 use crate::scene::Scene;
 
-/// The half-space that is `body` 1 or 2 of a scene, with pressures and tractions on it, `[my][mx]`; none: not there.
-/// Refuses effects with which stresses are not known. The distance and the load of the scene are not used.
+/// Returns the half-space that stands for `body` 1 or 2 of a scene, and its loads. `loads` are the pressure and the tractions, `[my][mx]`, or
+/// `None`. Effects for which stresses are not known are refused. The undeformed distance and the load of the scene are not used.
 pub fn of_scene<'a>(scene: &'a Scene<'a>, body: i32, loads: [Option<&'a [f64]>; 3]) -> Result<(Body, Loads<'a>)> {
     effects::check_effects(scene)?;
-    let b = match body {
+    let index = match body {
         1 => 0,
         2 => 1,
         other => return invalid(format!("body is {other}; it must be 1 or 2")),
@@ -18,7 +18,7 @@ pub fn of_scene<'a>(scene: &'a Scene<'a>, body: i32, loads: [Option<&'a [f64]>; 
     let plain = scene.plain();
     let (mut periodic, mut patches) = (false, None);
     for effect in effects::effects(scene) {
-        match effect.stresses(b, &plain) {
+        match effect.stresses(index, &plain) {
             Stresses::Same => {}
             Stresses::Repeat => periodic = true,
             Stresses::Patches { count, patch, factors } => patches = Some(Patches { count, patch, factors }),
@@ -26,7 +26,7 @@ pub fn of_scene<'a>(scene: &'a Scene<'a>, body: i32, loads: [Option<&'a [f64]>; 
         }
     }
     let [pressure, traction_x, traction_y] = loads;
-    let poisson_ratio = scene.bodies.poisson_ratio[b];
+    let poisson_ratio = scene.bodies.poisson_ratio[index];
     let body = Body { grid: scene.grid, poisson_ratio, periodic };
     Ok((body, Loads { pressure, traction_x, traction_y, patches }))
 }

@@ -1,7 +1,8 @@
-//! Kernels of a load that is periodic in both directions.
+//! The kernels of loads that are periodic in both directions.
 //!
-//! *Deeper than an element's side* the spectrum is used. A wave `(kx, ky)`, `k = |(kx, ky)|`, of the load decays with the depth as `E = exp(-k z)`,
-//! so that few aliases of the grid's waves remain. With `h = 1 - 2 nu`, per unit wave of pressure and of traction in x:
+//! *At depths of at least the longer side of an element* the kernel is a sum over waves. A wave `(kx, ky)`, `k = |(kx, ky)|`, of the load decays
+//! with the depth as `E = exp(-k z)`, so that only few aliases of the grid's waves remain. With `h = 1 - 2 nu`, a unit wave of the pressure and
+//! of the traction in x has the stresses
 //!
 //! ```text
 //!       pressure                                   traction in x
@@ -13,18 +14,18 @@
 //! yz    i ky z E                                   z kx ky/k E
 //! ```
 //!
-//! each times `sinc(kx dx/2) sinc(ky dy/2)`. The mean of the load, k = 0, gives `szz = -p`, `sxz = -qx`, `syz = -qy`, and
-//! `sxx = syy = -nu/(1 - nu) p`: the mean lateral strain is 0.
+//! each times `sinc(kx dx/2) sinc(ky dy/2)`. The mean of the load, k = 0, has the stresses `szz = -p`, `sxz = -qx`, `syz = -qy`, and `sxx = syy =
+//! -nu/(1 - nu) p`: the mean lateral strain is 0.
 //!
-//! *Nearer the surface* too many aliases would remain. There the kernel is extrapolated from depths `z_j = 1, 2, ..., 10` sides by a
-//! polynomial in z, and the error of this polynomial is summed over images in space:
+//! *Nearer the surface* too many aliases would remain. There the kernel K is extrapolated from the depths `z_j = 1, 2, ..., 10` sides by a
+//! polynomial in z. The error of this polynomial is a sum over images in space, with the kernel k of a single element:
 //!
 //! ```text
 //! K(z) = sum over j of w_j K(z_j)  +  sum over images of [k(z) - sum over j of w_j k(z_j)],    w_j Lagrange's weights at z
 //! ```
 //!
-//! The bracket is a tenth difference of a function of z/r. It decays as `10!/r^12`, and is negligible from [`REACH`] sides on. Both sums over j are
-//! evaluated first: the waves decay by `sum w_j exp(-k z_j)`, and one table of brackets is summed over the images.
+//! The bracket is a tenth difference of a function of z/r. It decays as `10!/r^12`, and is negligible beyond [`REACH`] sides. Both sums over j
+//! are evaluated first: the waves decay by `sum w_j exp(-k z_j)`, and one table of brackets is summed over the images.
 
 use super::body::Body;
 use super::kernels::{is_odd, Asked, Kernels};
@@ -33,31 +34,37 @@ use crate::blocks::LANES;
 use crate::error::{Error, Number, Result};
 use crate::memory::zeros;
 
-/// Beyond this distance, in longer sides, images differ from the polynomial by `10!/10/r^10 = 1e-14`.
+/// The distance, in longer sides, beyond which images are left out. The brackets there are `10!/10/r^10 = 1e-14`.
 const REACH: f64 = 90.0;
-/// Elements more slender than this have too many images within reach.
+/// The largest ratio of the sides of an element. More slender elements have too many images within reach.
 pub const MOST_SLENDER: f64 = 64.0;
 
-/// Kernels of one depth on a grid that is one period.
+/// The kernels of one depth on a grid that is one period.
 pub struct Waves {
+    /// The kernels that are wanted.
     asked: Asked,
+    /// The sums of waves over their aliases.
     aliased: Aliased,
-    /// The spectrum of each requested kernel, `[bin in x][bin in y]`, both >= 0. Imaginary spectra are stored without i.
+    /// The spectra of all kernels, `[kernel][bin in x][bin in y]`, at bins >= 0. Imaginary spectra are stored without the factor i.
     spectrum: Vec<f64>,
+    /// The numbers of bins in x and in y.
     bins: (usize, usize),
-    /// For depths near the surface: brackets of single elements, and the sum over images at offsets up to half the period. Set up when needed.
+    /// The sums over images for depths near the surface. `None` if no depth is near the surface.
     images: Option<Images>,
 }
 
+/// The sums over images for depths near the surface.
 struct Images {
+    /// The brackets of a single element.
     brackets: Kernels,
+    /// The number of offsets in x and in y at which brackets are computed.
     reach: (usize, usize),
-    /// The sum over images of each kernel, `[ky][kx]`.
+    /// The sums over images, `[kernel][ky][kx]`, at offsets up to half the period.
     folded: Vec<f64>,
 }
 
 impl Waves {
-    /// Memory for the requested kernels, with `asked.offsets` up to half the period. `near`: including depths near the surface.
+    /// Allocates memory for the wanted kernels, with `asked.offsets` up to half the period. `near`: whether some depth is near the surface.
     pub fn new(body: &Body, asked: Asked, near: bool) -> Result<Waves> {
         let grid = &body.grid;
         let bins = (grid.mx / 2 + 1, grid.my / 2 + 1);
@@ -81,7 +88,7 @@ impl Waves {
         z < 1.0
     }
 
-    /// Rejects elements with too many images.
+    /// Refuses a depth near the surface if the elements are so slender that too many images are within reach.
     pub fn check(body: &Body, depth: f64) -> Result<()> {
         let (dx, dy) = body.element();
         if Waves::is_near(body.in_units(depth)) && dx.min(dy) < 1.0 / MOST_SLENDER {
@@ -96,7 +103,7 @@ impl Waves {
         Ok(())
     }
 
-    /// Computes all kernels at depth z, in longer sides.
+    /// Computes all kernels at the depth z, in longer sides.
     pub fn compute(&mut self, body: &Body, z: f64) {
         let fading = Fading::new(z);
         if let (Fading::Near(weights), Some(images)) = (&fading, &mut self.images) {
@@ -116,19 +123,20 @@ impl Waves {
         });
     }
 
-    /// The numbers of bins in x and in y with waves at the computed depth. Waves in the other bins have decayed.
+    /// The numbers of bins in x and in y, from 0 on, with waves that remain at the computed depth. In the other bins all waves have decayed.
     pub fn left(&self) -> (usize, usize) {
         self.aliased.left
     }
 
-    /// The spectrum of a kernel, `[bin in x][bin in y]`, in the bins with waves. An imaginary one is without i.
+    /// The spectrum of a kernel, `[bin in x][bin in y]`, without the factor i if it is imaginary. Only the bins with remaining waves are
+    /// computed.
     pub fn spectrum(&self, load: usize, component: usize) -> Option<&[f64]> {
         let n = self.bins.0 * self.bins.1;
         let k = self.asked.place(load, component)?;
         Some(&self.spectrum[k * n..(k + 1) * n])
     }
 
-    /// Near the surface: the sum over images in space, `[ky][kx]`.
+    /// The sum over images of a kernel near the surface, `[ky][kx]`.
     pub fn images(&self, load: usize, component: usize) -> Option<&[f64]> {
         let n = self.asked.offsets.0 * self.asked.offsets.1;
         let k = self.asked.place(load, component)?;
@@ -137,7 +145,7 @@ impl Waves {
 }
 
 impl Images {
-    /// Computes the sums over images of a bracket: depths and their weights.
+    /// Computes the sums over images of a bracket, which is given by pairs of a depth and its weight.
     fn compute(&mut self, body: &Body, asked: &Asked, bracket: &[(f64, f64)]) {
         self.brackets.combine(body, bracket);
         self.folded.fill(0.0);
@@ -159,7 +167,7 @@ impl Images {
     }
 }
 
-/// Offsets `|k + n m| < reach` of all images, and the signs of a kernel there.
+/// The offsets `|k + n m| < reach` of all images, and the sign of a kernel at each.
 fn images(k: usize, m: usize, reach: usize, odd: bool) -> impl Iterator<Item = (usize, f64)> {
     let above = (k..reach).step_by(m).map(|place| (place, 1.0));
     // k <= m/2 < m.

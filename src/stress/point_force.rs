@@ -1,6 +1,7 @@
-//! Stresses of concentrated forces on the surface (Boussinesq, Cerruti; Johnson, Contact Mechanics, eqs. 3.18 and 3.76).
+//! Stresses by concentrated forces on the surface of a half-space (Boussinesq, Cerruti; Johnson, Contact Mechanics, eqs. 3.18 and 3.76).
 //!
-//! At distance R from the force, `(l, m, n) = (x, y, z)/R`, `w = 1/(1 + n)`, `h = 1 - 2 nu`; all times `1/(2 pi R^2)`:
+//! At the position (x, y, z) relative to the force, with R its length, `(l, m, n) = (x, y, z)/R`, `w = 1/(1 + n)` and `h = 1 - 2 nu`, the
+//! stresses by a unit force are `1/(2 pi R^2)` times
 //!
 //! ```text
 //!       force by pressure (into the body)         force in x
@@ -12,27 +13,29 @@
 //! yz    -3 m n^2                                   -3 l m n
 //! ```
 //!
-//! A force in y is one in x with x and y exchanged. In direction cosines nothing overflows, at any distance.
+//! A force in y has the stresses of one in x, with x and y exchanged. The formulas contain direction cosines only, so that nothing overflows at
+//! any distance.
 
 use super::body::{Body, Loaded};
 use crate::blocks::LANES;
 
-/// One value per place.
+/// One value for each of several positions.
 pub type Lanes = [f64; LANES];
 
-/// `[load][component][place]`.
+/// Stresses `[load][component][position]`.
 pub type Values = [[Lanes; 6]; 3];
 
-/// Adds to `sum` the stresses by forces of size `force` of the loads wanted, at places `(x, y, z)` from them.
-pub fn add(body: &Body, loaded: Loaded, place: (&Lanes, f64, f64), force: f64, sum: &mut Values) {
-    pulp::Arch::new().dispatch(Add { nu: body.poisson_ratio, loaded, place, force, sum });
+/// Adds to `sum` the stresses by a force of size `force` for each load in `loaded`. The positions relative to the force have the given x, and one
+/// y and z.
+pub fn add(body: &Body, loaded: Loaded, position: (&Lanes, f64, f64), force: f64, sum: &mut Values) {
+    pulp::Arch::new().dispatch(Add { nu: body.poisson_ratio, loaded, position, force, sum });
 }
 
-/// The forces of [`add`], compiled for the vectors of this machine.
+/// The work of [`add`], which pulp compiles for the vector instructions of the machine.
 struct Add<'a> {
     nu: f64,
     loaded: Loaded,
-    place: (&'a Lanes, f64, f64),
+    position: (&'a Lanes, f64, f64),
     force: f64,
     sum: &'a mut Values,
 }
@@ -42,7 +45,7 @@ impl pulp::NullaryFnOnce for Add<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Add { nu, loaded, place: (x, y, z), force, sum } = self;
+        let Add { nu, loaded, position: (x, y, z), force, sum } = self;
         let h = 1.0 - 2.0 * nu;
         let scale = force / (2.0 * std::f64::consts::PI);
         let [mut l, mut m, mut n, mut w, mut s] = [[0.0; LANES]; 5];
@@ -74,18 +77,19 @@ impl pulp::NullaryFnOnce for Add<'_> {
     }
 }
 
-/// A force along the first of two directions; `place` says where its components stand.
+/// Adds the stresses by a force along the first of two lateral directions, with the direction cosines l, m. `index` has the index in `out` of
+/// each component.
 #[inline(always)]
-fn in_x(h: f64, (l, m, n, w, s): (&Lanes, &Lanes, &Lanes, &Lanes, &Lanes), place: [usize; 6], out: &mut [Lanes; 6]) {
+fn in_x(h: f64, (l, m, n, w, s): (&Lanes, &Lanes, &Lanes, &Lanes, &Lanes), index: [usize; 6], out: &mut [Lanes; 6]) {
     for i in 0..LANES {
         let (l, m, n, w, s) = (l[i], m[i], n[i], w[i], s[i]);
         let w2 = w * w;
         let g = (3.0 + n) * w2 * w;
-        out[place[0]][i] += s * l * (h * (1.0 - 3.0 * w2 + l * l * g) - 3.0 * l * l);
-        out[place[1]][i] += s * l * (h * (1.0 - w2 + m * m * g) - 3.0 * m * m);
-        out[place[2]][i] += s * (-3.0 * l * n * n);
-        out[place[3]][i] += s * m * (h * (l * l * g - w2) - 3.0 * l * l);
-        out[place[4]][i] += s * (-3.0 * l * l * n);
-        out[place[5]][i] += s * (-3.0 * l * m * n);
+        out[index[0]][i] += s * l * (h * (1.0 - 3.0 * w2 + l * l * g) - 3.0 * l * l);
+        out[index[1]][i] += s * l * (h * (1.0 - w2 + m * m * g) - 3.0 * m * m);
+        out[index[2]][i] += s * (-3.0 * l * n * n);
+        out[index[3]][i] += s * m * (h * (l * l * g - w2) - 3.0 * l * l);
+        out[index[4]][i] += s * (-3.0 * l * l * n);
+        out[index[5]][i] += s * (-3.0 * l * m * n);
     }
 }

@@ -1,4 +1,5 @@
-//! Stresses at given points, by direct summation over the loaded elements: valid at any place, and the oracle of the product.
+//! Stresses at given points, by direct summation over the loaded elements. The sums hold at any point, and tests compare the products by FFT with
+//! them.
 
 use std::time::Instant;
 
@@ -11,16 +12,17 @@ use crate::grid::Grid;
 use crate::progress::{Progress, ProgressCallback};
 use crate::threads::Threads;
 
-/// Elements times points between two calls of `progress`: some 10 ms of one thread.
+/// The number of elements times points between two calls of `progress`: some 10 ms of one thread.
 const AT_ONCE: usize = 1 << 17;
 
-/// The stresses at points `(x, y, z)`: x and y are counted from the middle of the grid, so that element `(ix, iy)` has its centre at
-/// `((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy)`; z is the depth. `out` has one tensor per point.
+/// Computes the stresses at `points`, one tensor per point in `out`. A point is `(x, y, z)` with the depth z. x and y are counted from the middle
+/// of the grid, so that element `(ix, iy)` has its centre at `((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy)`. `progress` is called every few
+/// milliseconds with the number of points that are done. Returns true if all points are done, false if `progress` cancelled.
 ///
-/// # Errors
-/// `Unsupported`: a period; `InvalidArgument`: a negative depth, a point on the edge of an element at the surface, to within rounding of its
-/// coordinates, where stresses jump or are infinite, or with patches a point that no element is above; otherwise as
-/// [`subsurface_stress`](super::subsurface_stress). False: `progress`, which is called every few milliseconds with the points done, cancelled.
+/// * `Unsupported`: a period.
+/// * `InvalidArgument`: a negative depth; a point at the surface on the edge of an element, up to the rounding of its coordinates, where stresses
+///   jump or are infinite; with coupled patches, a point that lies below no element.
+/// * Otherwise as [`subsurface_stress`](super::subsurface_stress).
 pub fn stress_at_points(
     body: &Body,
     loads: &Loads<'_>,
@@ -45,7 +47,7 @@ pub fn stress_at_points(
         threads.for_each_plain_row(out, 1, |i, out| out[0] = at_point(body, loads, points[i]));
         done += points.len();
         let told = Progress::of_part(&body.grid, done as u64, began.elapsed().as_secs_f64());
-        // A stop that comes with the last points leaves nothing out.
+        // After the last points there is nothing to cancel.
         if progress.as_mut().is_some_and(|progress| progress(&told)) && done < all {
             return Ok(false);
         }
@@ -53,6 +55,7 @@ pub fn stress_at_points(
     Ok(true)
 }
 
+/// Refuses point i if its stresses are not defined.
 fn check(body: &Body, loads: &Loads<'_>, i: usize, [x, y, z]: [f64; 3]) -> Result<()> {
     for (axis, value) in ["x", "y", "z"].into_iter().zip([x, y, z]) {
         require(value.is_finite(), &format!("{axis} of point {i}"), value, "it must be finite")?;
@@ -79,20 +82,25 @@ fn check(body: &Body, loads: &Loads<'_>, i: usize, [x, y, z]: [f64; 3]) -> Resul
     Ok(())
 }
 
-/// Round-off of coordinates, relative to the larger of grid and coordinate: of 4096 additions, or of an origin 4096 lengths away.
+/// The round-off of coordinates, relative to the larger of the grid's length and the coordinate: that of 4096 additions, or of an origin that is
+/// 4096 lengths away.
 const ROUNDING: f64 = 4096.0 * f64::EPSILON;
 
-/// A coordinate among the edges of m elements of size d.
+/// The position of a coordinate among the edges of m elements of size d.
 struct Line {
+    /// The round-off of the coordinate.
     rounding: f64,
+    /// Whether the coordinate lies on the grid, up to round-off.
     is_inside: bool,
+    /// Whether the coordinate lies on an edge, up to round-off.
     is_on_edge: bool,
 }
 
 impl Line {
+    /// The position of the coordinate x, which is counted from the first edge.
     fn of(x: f64, d: f64, m: usize) -> Line {
         let length = m as f64 * d;
-        // At most 1e-3 of an element, so that only the nearest edge is tested.
+        // The round-off is at most 1e-3 of an element, so that only the nearest edge is tested.
         let rounding = (ROUNDING * length.max(x.abs())).min(1e-3 * d);
         let nearest = (x / d).round().clamp(0.0, m as f64) * d;
         let is_inside = x >= -rounding && x <= length + rounding;
@@ -100,17 +108,18 @@ impl Line {
     }
 }
 
-/// The point relative to the outer corner of element (0, 0).
+/// The point relative to the outer corner of element (0, 0) instead of the middle of the grid.
 fn from_corner(grid: &Grid, [x, y, z]: [f64; 3]) -> [f64; 3] {
     [x + 0.5 * grid.mx as f64 * grid.dx, y + 0.5 * grid.my as f64 * grid.dy, z]
 }
 
+/// The stresses at one point: the sum over all elements.
 fn at_point(body: &Body, loads: &Loads<'_>, point: [f64; 3]) -> Tensor {
     let (grid, (dx, dy)) = (&body.grid, body.element());
     let [x, y, z] = from_corner(grid, point);
     let (loaded, list) = (loads.loaded(), loads.list());
     let scale = loads.scale();
-    // On a common edge, the patch of the next element.
+    // A point below the common edge of two elements belongs to the patch of the one at larger x or y.
     let above = |x: f64, d: f64, m: usize| ((x / d) as usize).min(m - 1);
     let part = loads.coupled().map_or(Part::All, |patches| {
         Part::of(patches, grid.index(above(x, grid.dx, grid.mx), above(y, grid.dy, grid.my)))

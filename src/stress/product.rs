@@ -1,9 +1,10 @@
-//! Sums over elements at one depth, by FFT.
+//! The sums over elements at one depth, as products by FFT.
 //!
-//! Loads are transformed once. A stress component at one depth is the sum of the loads' products by its kernels ([`ParityProduct`]).
+//! The loads are transformed once for all depths. A stress component at one depth is the sum of the products of the loads by the kernels of this
+//! component ([`ParityProduct`]).
 //!
-//! With a period there is no padding, and waves that have decayed at a depth are left out. With patches each patch has loads and products of its
-//! own, with common kernels.
+//! With a period the grid is not padded, and waves that have decayed at a depth are left out. With coupled patches each patch has its own loads
+//! and products; all patches have the same kernels.
 
 use toeplitz::fft::{good_length, Complex};
 use toeplitz::{ParityMemory, ParityProduct, Term};
@@ -16,49 +17,56 @@ use crate::effects::Patches;
 use crate::error::Result;
 use crate::memory::zeros;
 
-/// The name of this memory in messages.
+/// The name of the memory of stresses in messages.
 const STRESS: &str = "the stresses of a depth";
 
-/// The transform of each load, `[bin in x][bin in y]`, divided by the number of elements of a period; none if there is no such load.
+/// The transform of each load, `[bin in x][bin in y]`, divided by the number of elements of the padded grid; `None` if there is no such load.
 type Spectra = [Option<Vec<Complex<f64>>>; 3];
 
 /// The products of the loads of one body by the kernels of any depth.
 pub struct Product<'a> {
+    /// The loaded half-space.
     pub body: Body,
+    /// The Fourier transforms on the padded grid.
     transforms: ParityProduct,
-    /// The loads of each part.
+    /// The transformed loads of each part of the grid.
     parts: Vec<(Part, Spectra)>,
+    /// The contact patches.
     patches: Option<Patches<'a>>,
-    /// The divisor of the loads.
+    /// The number by which the loads are divided.
     scale: f64,
     /// With a period: whether some depth is near the surface.
     near: bool,
 }
 
-/// Kernels of one depth.
+/// The kernels of one depth.
 enum Source {
+    /// Tables over offsets, without a period.
     Free(Kernels),
+    /// Sums over waves, with a period.
     Periodic(Box<Waves>),
 }
 
-/// Memory for the products of one depth.
+/// The memory for the products of one depth.
 pub struct Workspace {
+    /// The kernels.
     source: Source,
-    /// Whether the entered depth is near the surface.
+    /// With a period: whether the current depth is near the surface.
     near: bool,
-    /// Bins in x and in y, from 0 on, that are not 0 at this depth.
+    /// The numbers of bins in x and in y, from 0 on, in which the kernels are not 0 at this depth.
     left: (usize, usize),
+    /// The memory of the Fourier transforms.
     memory: ParityMemory,
-    /// The symbols of one component's tabulated kernels: `[load][bin in x][bin in y >= 0]`.
+    /// The symbols of the tabulated kernels of one component: `[load][bin in x][bin in y >= 0]`.
     spectrum: Vec<f64>,
-    /// The transform of the stresses: `[iy][bin in x]`.
+    /// The stresses of one component, transformed in x: `[iy][bin in x]`.
     stress: Vec<Complex<f64>>,
-    /// With patches: the stresses of one patch's loads on the whole grid.
+    /// With coupled patches: the stresses by the loads of one patch, on the whole grid.
     field: Vec<f64>,
 }
 
 impl<'a> Product<'a> {
-    /// Transforms the checked loads.
+    /// Transforms the loads, which have been checked. `near`: with a period, whether some depth is near the surface.
     pub fn new(body: &Body, loads: &Loads<'a>, near: bool) -> Result<Product<'a>> {
         let period = |m: usize| if body.periodic { m } else { good_length(2 * m - 1) };
         let (px, py) = (period(body.grid.mx), period(body.grid.my));
@@ -83,12 +91,12 @@ impl<'a> Product<'a> {
         self.parts[0].1.each_ref().map(Option::is_some)
     }
 
-    /// Offsets at which kernels are tabulated: those of the grid, or up to half a period.
+    /// The numbers of offsets at which kernels are tabulated: those of the grid, or those up to half a period.
     fn offsets(&self) -> (usize, usize) {
         self.body.grid.offsets((self.body.periodic, self.body.periodic))
     }
 
-    /// Memory for the products of one depth, with these components.
+    /// Allocates the memory for the products of one depth, for the wanted components.
     pub fn workspace(&self, components: [bool; 6]) -> Result<Workspace> {
         let (nb, half) = self.transforms.bins();
         let loaded = self.loaded();
@@ -109,7 +117,7 @@ impl<'a> Product<'a> {
         })
     }
 
-    /// Computes the kernels of depth z.
+    /// Computes the kernels of the depth z, which becomes the current depth.
     pub fn enter(&self, z: f64, workspace: &mut Workspace) {
         let z = self.body.in_units(z);
         workspace.near = Waves::is_near(z);
@@ -125,11 +133,12 @@ impl<'a> Product<'a> {
         }
     }
 
+    /// Whether the grid has parts with different loads.
     fn has_patches(&self) -> bool {
         self.parts.iter().any(|(part, _)| *part != Part::All)
     }
 
-    /// Component c at the entered depth.
+    /// Computes component c of the stresses at the current depth.
     pub fn component(&self, c: usize, workspace: &mut Workspace, out: &mut [f64]) {
         for load in (0..3).filter(|&load| self.loaded()[load]) {
             self.transform_table(load, c, workspace);
@@ -147,7 +156,7 @@ impl<'a> Product<'a> {
         }
     }
 
-    /// The symbol of one tabulated kernel.
+    /// Computes the symbol of one tabulated kernel.
     fn transform_table(&self, load: usize, c: usize, workspace: &mut Workspace) {
         let (nb, half) = self.transforms.bins();
         let Workspace { source, memory, spectrum, near, .. } = workspace;
@@ -164,7 +173,7 @@ impl<'a> Product<'a> {
         }
     }
 
-    /// Multiplies all loads and transforms back in y.
+    /// Multiplies all loads by their kernels, and transforms the sum back in y.
     fn multiply(&self, loads: &Spectra, c: usize, workspace: &mut Workspace) {
         let (nb, half) = self.transforms.bins();
         let Workspace { source, spectrum, memory, stress, left, near, .. } = workspace;

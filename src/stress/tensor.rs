@@ -1,28 +1,28 @@
-//! One stress tensor: von Mises stress, principal stresses and directions, largest shear.
+//! Results from one stress tensor: the von Mises stress, the principal stresses and their directions, the largest shear stress.
 
-/// The six components, in the order xx, yy, zz, xy, xz, yz; positive in tension.
+/// A stress tensor: its six components in the order xx, yy, zz, xy, xz, yz, positive in tension.
 pub type Tensor = [f64; 6];
 
-/// Most sweeps of Jacobi's method: it converges quadratically, and six reach round-off.
+/// The largest number of sweeps of Jacobi's method. It converges quadratically, and six sweeps reach round-off.
 const SWEEPS: usize = 12;
 
-/// Principal stresses, the largest first, and the unit vectors of their directions.
+/// The principal stresses and their directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Principal {
-    /// The stresses, descending.
+    /// The principal stresses, the largest first.
     pub stresses: [f64; 3],
-    /// The direction of each: `directions[k]` is that of `stresses[k]`.
+    /// Unit vectors: `directions[k]` is the direction of `stresses[k]`.
     pub directions: [[f64; 3]; 3],
 }
 
 impl Principal {
-    /// Half the difference of the largest and the smallest principal stress.
+    /// The largest shear stress: half the difference of the largest and the smallest principal stress.
     pub fn maximum_shear(&self) -> f64 {
         0.5 * (self.stresses[0] - self.stresses[2])
     }
 }
 
-/// `sqrt(((xx - yy)^2 + (yy - zz)^2 + (zz - xx)^2)/2 + 3 (xy^2 + xz^2 + yz^2))`.
+/// The von Mises stress `sqrt(((xx - yy)^2 + (yy - zz)^2 + (zz - xx)^2)/2 + 3 (xy^2 + xz^2 + yz^2))`.
 pub fn von_mises([xx, yy, zz, xy, xz, yz]: Tensor) -> f64 {
     let scale = largest(&[xx, yy, zz, xy, xz, yz]);
     if scale == 0.0 {
@@ -33,7 +33,8 @@ pub fn von_mises([xx, yy, zz, xy, xz, yz]: Tensor) -> f64 {
     scale * (0.5 * normal + 3.0 * (square(xy) + square(xz) + square(yz))).sqrt()
 }
 
-/// Principal stresses by Jacobi's cyclic rotations: accurate also for nearly equal ones (Golub & Van Loan, section 8.5).
+/// Computes the principal stresses and directions by Jacobi's cyclic rotations (Golub & Van Loan, section 8.5), which are accurate also for
+/// nearly equal stresses.
 pub fn principal(tensor: Tensor) -> Principal {
     let scale = largest(&tensor);
     let [xx, yy, zz, xy, xz, yz] = if scale > 0.0 { tensor.map(|value| value / scale) } else { tensor };
@@ -55,10 +56,10 @@ pub fn principal(tensor: Tensor) -> Principal {
     }
 }
 
-/// Rotates by the angle that makes `a[p][q]` zero.
+/// Rotates the matrix `a` by the angle that makes `a[p][q]` zero, and the columns of `v` with it.
 fn rotate(a: &mut [[f64; 3]; 3], v: &mut [[f64; 3]; 3], p: usize, q: usize) {
     let off = a[p][q];
-    // Too small to change the diagonal.
+    // The element is too small to change the diagonal.
     if off.abs() <= 0.25 * f64::EPSILON * f64::min(a[p][p].abs(), a[q][q].abs()) || off == 0.0 {
         (a[p][q], a[q][p]) = (0.0, 0.0);
         return;
@@ -79,6 +80,7 @@ fn rotate(a: &mut [[f64; 3]; 3], v: &mut [[f64; 3]; 3], p: usize, q: usize) {
     }
 }
 
+/// The largest absolute value.
 fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, value| f64::max(largest, value.abs()))
 }

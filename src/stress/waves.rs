@@ -1,30 +1,32 @@
-//! Sums of the waves of a periodic load over their aliases, in lanes: see the formulas of [`periodic`](super::periodic).
+//! Sums of the waves of a periodic load over their aliases, computed in lanes. The formulas are in [`periodic`](super::periodic).
 
-use std::f64::consts::{LOG2_E, PI};
+use std::f64::consts::PI;
 
 use super::body::{Body, Loaded};
+use super::exponential::exp_of_minus;
 use super::point_force::{Lanes, Values};
 use crate::blocks::LANES;
 use crate::error::Result;
 use crate::memory::zeros;
 
-/// k z beyond which waves are dropped: `exp(-37) = 9e-17`.
+/// The k z beyond which waves are dropped: `exp(-37) = 9e-17`.
 const FADED: f64 = 37.0;
-/// Most aliases of a bin at depths of at least an element's longer side: `2 FADED/(2 pi) + 1`, rounded up.
+/// The largest number of aliases of a bin at depths of at least an element's longer side: `2 FADED/(2 pi) + 1`, rounded up.
 const MOST_ALIASES: usize = (2.0 * FADED / (2.0 * PI)) as usize + 2;
-/// Nodes of the extrapolation of a kernel to the surface: depths of 1, 2, ... sides.
+/// The number of nodes of the extrapolation of a kernel to the surface: the depths of 1, 2, ... sides.
 pub const NODES: usize = 10;
 
-/// The decay of waves: `exp(-k z)`, or nearer to the surface than a side Lagrange's polynomial in z through its values at the nodes.
+/// The decay of waves with the depth: `exp(-k z)`, or nearer to the surface than a side, Lagrange's polynomial in z through the values at the
+/// nodes.
 pub enum Fading {
-    /// A depth of a side or more.
+    /// A depth z of at least one side.
     Deep(f64),
-    /// The weights of the nodes.
+    /// The weights of the nodes at a smaller depth.
     Near([f64; NODES]),
 }
 
 impl Fading {
-    /// The decay at the depth z, in longer sides.
+    /// The decay at the depth z, in longer sides of an element.
     pub fn new(z: f64) -> Fading {
         if z >= 1.0 {
             return Fading::Deep(z);
@@ -44,7 +46,7 @@ impl Fading {
         }
     }
 
-    /// `E = exp(-k z)` and `z E`, or their extrapolations, where no k is less than `least`.
+    /// `E = exp(-k z)` and `z E`, or their extrapolations, for wave numbers k of which none is below `least`.
     #[inline(always)]
     fn of(&self, k: &Lanes, least: f64) -> (Lanes, Lanes) {
         match self {
@@ -55,7 +57,7 @@ impl Fading {
             Fading::Near(weights) => {
                 let x = exp_of_minus(k);
                 let (mut e, mut ze) = ([0.0; LANES], [0.0; LANES]);
-                // Deeper nodes contribute less than exp(-FADED): weights are up to 252 = exp(5.6).
+                // Deeper nodes contribute less than exp(-FADED), since weights are at most 252 = exp(5.6).
                 let nodes = ((FADED + 5.6) / least.max(1.0)) as usize + 1;
                 for (j, weight) in weights.iter().enumerate().take(nodes).rev() {
                     let of_depth = (j as f64 + 1.0) * weight;
@@ -70,19 +72,24 @@ impl Fading {
     }
 }
 
-/// Waves of one direction: the wave numbers of the bins and their aliases, and the mean of each over an element.
+/// The waves of one direction: the wave numbers of the bins and of their aliases, and the mean of each wave over an element.
 struct Direction {
-    /// Period of the wave numbers: `2 pi` over an element's side.
+    /// The difference of the wave numbers of two successive aliases: `2 pi` over an element's side.
     period: f64,
+    /// The number of elements.
     m: usize,
+    /// The number of bins.
     bins: usize,
-    /// `[alias][bin]`, bins in whole lanes; the last bin is repeated.
+    /// The wave numbers `[alias][bin]`. The bins fill whole lanes, for which the last one is repeated.
     numbers: Vec<f64>,
+    /// The means of the waves over an element, `[alias][bin]`.
     means: Vec<f64>,
+    /// The number of aliases that are left at the current depth.
     aliases: usize,
 }
 
 impl Direction {
+    /// Memory for the waves of m elements with this side.
     fn new(m: usize, side: f64) -> Result<Direction> {
         let bins = m / 2 + 1;
         let n = MOST_ALIASES * bins.next_multiple_of(LANES);
@@ -91,64 +98,66 @@ impl Direction {
         Ok(Direction { period: 2.0 * PI / side, m, bins, numbers, means, aliases: 0 })
     }
 
+    /// The number of bins, rounded up to whole lanes.
     fn width(&self) -> usize {
         self.bins.next_multiple_of(LANES)
     }
 
-    /// Sets up the wave numbers up to `most`. Returns the number of bins with any.
+    /// Sets up the waves with wave numbers up to `most`. Returns the number of bins, from 0 on, that have any.
     fn enter(&mut self, most: f64) -> usize {
         let width = self.width();
-        let place = |bin: usize| bin.min(self.bins - 1) as f64 / self.m as f64;
-        // Bins are at 0 to 1/2 of the period.
+        let fraction = |bin: usize| bin.min(self.bins - 1) as f64 / self.m as f64;
+        // The bins lie between 0 and half the period.
         let first = (-most / self.period - 0.5).ceil() as i64;
         let last = (most / self.period).floor() as i64;
         self.aliases = 0;
         let rows = self.numbers.chunks_exact_mut(width).zip(self.means.chunks_exact_mut(width));
         for (alias, (numbers, means)) in (first..=last).zip(rows) {
             for bin in 0..width {
-                let part = PI * (place(bin) + alias as f64);
-                numbers[bin] = self.period * (place(bin) + alias as f64);
+                let part = PI * (fraction(bin) + alias as f64);
+                numbers[bin] = self.period * (fraction(bin) + alias as f64);
                 means[bin] = if part == 0.0 { 1.0 } else { part.sin() / part };
             }
             self.aliases += 1;
         }
-        // With aliases no bin is left out.
+        // If there are several aliases, no bin is left out.
         match (most / self.period * self.m as f64).floor() as usize {
             whole if self.aliases == 1 => self.bins.min(whole + 1),
             _ => self.bins,
         }
     }
 
-    /// Wave number and mean of an alias of a bin.
+    /// The wave number and the mean of an alias of a bin.
     fn of_bin(&self, alias: usize, bin: usize) -> (f64, f64) {
-        let place = alias * self.width() + bin;
-        (self.numbers[place], self.means[place])
+        let index = alias * self.width() + bin;
+        (self.numbers[index], self.means[index])
     }
 
-    /// Wave numbers and means of an alias of the bins from `first` on.
+    /// The wave numbers and the means of an alias of the [`LANES`] bins from `first` on.
     fn of_lanes(&self, alias: usize, first: usize) -> (Lanes, Lanes) {
-        let place = alias * self.width() + first;
-        let lanes = |values: &[f64]| std::array::from_fn(|i| values[place + i]);
+        let index = alias * self.width() + first;
+        let lanes = |values: &[f64]| std::array::from_fn(|i| values[index + i]);
         (lanes(&self.numbers), lanes(&self.means))
     }
 }
 
-/// The spectra of the kernels of one depth.
+/// The spectra of the kernels of one depth, as sums over aliases.
 pub struct Aliased {
+    /// The waves in x and in y.
     directions: [Direction; 2],
-    /// Bins in x and in y with waves that are not dropped; the spectra of all others are 0.
+    /// The numbers of bins in x and in y, from 0 on, with waves that are not dropped. The spectra in all other bins are 0.
     pub left: (usize, usize),
 }
 
 impl Aliased {
-    /// Memory for the waves of a body.
+    /// Allocates memory for the waves of a body.
     pub fn new(body: &Body) -> Result<Aliased> {
         let (dx, dy) = body.element();
         let directions = [Direction::new(body.grid.mx, dx)?, Direction::new(body.grid.my, dy)?];
         Ok(Aliased { directions, left: (0, 0) })
     }
 
-    /// Computes the spectra, and calls `store(bin in x, first bin in y, spectra)` for all bins in `left`.
+    /// Computes the spectra, and calls `store(bin in x, first bin in y, spectra)` for all bins in `left`, [`LANES`] bins in y at a time.
     pub fn compute(
         &mut self,
         body: &Body,
@@ -166,9 +175,9 @@ impl Aliased {
                 let mut sum: Values = [[[0.0; LANES]; 6]; 3];
                 cpu.dispatch(AddAliases { nu, loaded, x: (x, i), y: (y, first), fading, sum: &mut sum });
                 if i == 0 && first == 0 {
-                    // The mean of the load causes no lateral strain.
-                    let sideways = 2.0 * nu - nu / (1.0 - nu);
-                    (sum[0][0][0], sum[0][1][0]) = (sum[0][0][0] + sideways, sum[0][1][0] + sideways);
+                    // The mean of the load causes no lateral strain, which changes sxx and syy.
+                    let correction = 2.0 * nu - nu / (1.0 - nu);
+                    (sum[0][0][0], sum[0][1][0]) = (sum[0][0][0] + correction, sum[0][1][0] + correction);
                 }
                 store(i, first, &sum);
             }
@@ -176,7 +185,8 @@ impl Aliased {
     }
 }
 
-/// Adds all aliases of a bin in x and of a lane of bins in y. Compiled for the vectors of this machine, with all functions called.
+/// Adds the waves of all aliases of a bin in x and of [`LANES`] bins in y. pulp compiles this, with all functions that it calls, for the vector
+/// instructions of the machine.
 struct AddAliases<'a> {
     nu: f64,
     loaded: Loaded,
@@ -208,7 +218,8 @@ impl pulp::NullaryFnOnce for AddAliases<'_> {
     }
 }
 
-/// Adds waves of these loads: the spectra of [`periodic`](super::periodic) without their factors i, two of which make -1.
+/// Adds the stresses of waves with the amplitudes `loads`: the formulas of [`periodic`](super::periodic) without their factors i, of which two
+/// make -1.
 #[inline(always)]
 fn add(
     nu: f64,
@@ -249,49 +260,21 @@ fn add(
     }
 }
 
-/// Adds a traction along the first of two directions; `place` has the places of its components.
+/// Adds the stresses of a traction along the first of two lateral directions, with the direction cosines l, m of the wave vector. `index` has the
+/// index in `sum` of each component.
 #[inline(always)]
-fn by_traction(nu: f64, (l, m, e, kz): (&Lanes, &Lanes, &Lanes, &Lanes), place: [usize; 6], sum: &mut [Lanes; 6]) {
+fn by_traction(nu: f64, (l, m, e, kz): (&Lanes, &Lanes, &Lanes, &Lanes), index: [usize; 6], sum: &mut [Lanes; 6]) {
     for i in 0..LANES {
         let (l, m, e, kz) = (l[i], m[i], e[i], kz[i]);
         let both = 2.0 * nu * e + kz;
-        sum[place[0]][i] += l * (2.0 * (1.0 + nu) * e - l * l * both);
-        sum[place[1]][i] += l * (2.0 * nu * e - m * m * both);
-        sum[place[2]][i] += l * kz;
-        sum[place[3]][i] += m * (e - l * l * both);
-        sum[place[4]][i] += l * l * kz - e;
-        sum[place[5]][i] -= l * m * kz;
+        sum[index[0]][i] += l * (2.0 * (1.0 + nu) * e - l * l * both);
+        sum[index[1]][i] += l * (2.0 * nu * e - m * m * both);
+        sum[index[2]][i] += l * kz;
+        sum[index[3]][i] += m * (e - l * l * both);
+        sum[index[4]][i] += l * l * kz - e;
+        sum[index[5]][i] -= l * m * kz;
     }
 }
-
-/// `exp(-x)` of `0 <= x < 700`, in lanes: `2^-n exp(r)` with `|r| <= ln(2)/2` and Taylor's series of it.
-#[inline(always)]
-fn exp_of_minus(x: &Lanes) -> Lanes {
-    /// Added to a number of less than 2^51 it leaves its nearest integer in the last bits.
-    const SHIFT: f64 = 6_755_399_441_055_744.0;
-    /// ln 2 in two parts, of which the first has 32 bits: its multiples are exact.
-    const UPPER: f64 = 0.693_147_180_369_123_8;
-    const LOWER: f64 = 1.908_214_929_270_587_7e-10;
-    std::array::from_fn(|i| {
-        let shifted = x[i] * LOG2_E + SHIFT;
-        let n = shifted - SHIFT;
-        let r = (n * UPPER - x[i]) + n * LOWER;
-        let power = f64::from_bits(1.0_f64.to_bits().wrapping_sub(shifted.to_bits() << 52));
-        let series = TAYLOR.iter().rev().fold(0.0, |sum, term| sum * r + term);
-        power * series
-    })
-}
-
-/// `1/n!`: the first omitted term is 4e-18 at ln(2)/2.
-const TAYLOR: [f64; 14] = {
-    let mut terms = [1.0; 14];
-    let mut n = 1;
-    while n < 14 {
-        terms[n] = terms[n - 1] / n as f64;
-        n += 1;
-    }
-    terms
-};
 
 #[cfg(test)]
 #[path = "../../tests/unit/stress_waves.rs"]

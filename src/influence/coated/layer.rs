@@ -1,9 +1,11 @@
-//! The correction of one layer on a grid: the integral of F over each element.
+//! The correction of one layer on a grid: the integral of the radial function F over each element.
 //!
-//! The method depends on the larger of t and the distance of the element, in longer sides of an element:
+//! The method depends on the larger of two lengths, the thickness t and the distance of the element, in longer sides of an element:
 //!
-//! * beyond [`LEAST_DISTANCE`], the values at the centres of the element and its neighbours (see [`means`]): one evaluation per element;
-//! * nearer, tensor Gauss, or up to [`CORNERS`] diagonals the corner differences of `S(x, y) = integral from 0 to x and 0 to y of F`:
+//! * beyond [`LEAST_DISTANCE`], means over elements from the values of F at the centres of the element and its neighbours (see [`means`]), with
+//!   one evaluation per element;
+//! * nearer, tensor Gauss quadrature;
+//! * up to a distance of [`CORNERS`] diagonals of an element, corner differences of `S(x, y) = integral from 0 to x and 0 to y of F`:
 //!
 //! ```text
 //! S(x, y) = t^2 (T(x, y) + T(y, x)),    T(a, b) = integral from 0 to asinh(b/a) of M(a cosh(u)/t)/cosh(u) du
@@ -11,8 +13,9 @@
 //!
 //! The integrand of T is smooth for any ratio of element size to thickness.
 
+use super::base::Base;
 use super::offsets::{first_beyond, first_of_half, first_of_substrate, COATED};
-use super::radial::{Base, Radial};
+use super::radial::Radial;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::gauss::rule;
@@ -22,22 +25,26 @@ use crate::memory::zeros;
 
 /// The distance up to which corner differences are used, in diagonals of an element.
 pub(super) const CORNERS: f64 = 2.5;
-/// Tensor Gauss: below each distance, in longer sides, this number of points per side.
+/// The number of points per side of tensor Gauss quadrature, below each distance in longer sides of an element.
 const POINTS: [(f64, usize); 2] = [(12.0, 7), (LEAST_DISTANCE, 4)];
-/// Points of the Gauss rule for the integral T.
+/// The number of points of the Gauss rule for the integral T.
 pub(super) const LINE_POINTS: usize = 40;
 
 /// The correction of one layer on a grid.
-pub struct Layer<'a> {
+pub struct LayerCorrection<'a> {
+    /// The radial functions of the layer.
     pub radial: &'a Radial,
+    /// The thickness of the layer.
     pub t: f64,
+    /// The grid.
     pub grid: Grid,
     /// The integrals of 1/r over elements.
     pub half_space: &'a HalfSpace,
 }
 
-impl Layer<'_> {
-    /// Adds `(c/t) integral of F` to the `table`, in each row from [`first_of_half`] on. The base is the layer nearer than t, the substrate beyond.
+impl LayerCorrection<'_> {
+    /// Adds `(c/t) integral of F` to the `table`, in each row from [`first_of_half`] on. At distances below t the layer is the base, beyond the
+    /// substrate.
     pub fn add(&self, c: f64, table: &mut [f64]) -> Result<()> {
         let Grid { mx, my, dx, dy } = self.grid;
         let far = LEAST_DISTANCE * dx.max(dy);
@@ -47,7 +54,7 @@ impl Layer<'_> {
             move |ky: usize, first: usize, row: &mut [f64]| {
                 let y = ky as f64 * dy / self.t;
                 let skipped = usize::from(ky == 0 && base == Base::Substrate);
-                // F of the substrate is infinite at offset 0. Means near it are not used.
+                // F with the substrate as base is infinite at offset 0. Means near this offset are not used.
                 row[..skipped].fill(0.0);
                 let x = (first + skipped) as f64 * dx / self.t;
                 self.radial.fill_f((x, dx / self.t, y), base, &mut row[skipped..]);
@@ -59,7 +66,7 @@ impl Layer<'_> {
         };
         let last = ((mx - 1) as f64 * dx).hypot((my - 1) as f64 * dy);
         if self.t >= far {
-            // Offsets nearer than t lie in this box.
+            // All offsets nearer than t lie in a rectangle of these counts.
             let count = |d: f64, m: usize| ((self.t / d) as usize).saturating_add(1).min(m);
             means::means((count(dx, mx), count(dy, my)), first, fill(Base::Layer), |ky, means| {
                 add_row(ky, means, 0, first_beyond(self.t, &self.grid, ky));
@@ -76,7 +83,7 @@ impl Layer<'_> {
         Ok(())
     }
 
-    /// Adds the offsets nearer than [`LEAST_DISTANCE`].
+    /// Adds the correction at offsets nearer than [`LEAST_DISTANCE`].
     fn add_near(&self, c: f64, table: &mut [f64]) -> Result<()> {
         let Grid { mx, my, dx, dy } = self.grid;
         let h = dx.max(dy);
@@ -96,7 +103,8 @@ impl Layer<'_> {
                     *value += c * self.gauss(rule(points), (x, y), here);
                     continue;
                 }
-                // All corners have one base. If this offset has the other, the half-space adds the difference, `(1 - B0)/rho`.
+                // The corner values have the same base at all offsets. If this offset has the other base, the integral of the difference `(1 -
+                // B0)/rho` is added.
                 let other = base.to(here) * (1.0 - self.radial.transfer.substrate);
                 let half_space = if other == 0.0 { 0.0 } else { other * self.half_space.at(kx as i64, ky as i64) };
                 *value += c * (corners.difference(kx, ky) + half_space);
@@ -105,7 +113,7 @@ impl Layer<'_> {
         Ok(())
     }
 
-    /// `(1/t) integral of F` by tensor Gauss.
+    /// `(1/t) integral of F` over the element centred at `(x, y)`, by tensor Gauss quadrature.
     pub fn gauss(&self, rule: &[(f64, f64)], (x, y): (f64, f64), base: Base) -> f64 {
         let Grid { dx, dy, .. } = self.grid;
         let mut sum = 0.0;
@@ -121,14 +129,17 @@ impl Layer<'_> {
     }
 }
 
-/// S/t at the corners of the elements near the loaded one.
+/// The values S/t at the corners of the elements near the loaded one.
 struct Corners {
+    /// The number of corners in a row.
     columns: usize,
+    /// S/t, `[row][column]`, at half-integer offsets from 1/2 on.
     values: Vec<f64>,
 }
 
 impl Corners {
-    fn new(layer: &Layer<'_>, base: Base, (columns, rows): (usize, usize)) -> Result<Corners> {
+    /// Computes S/t at the corners of `columns` by `rows` elements.
+    fn new(layer: &LayerCorrection<'_>, base: Base, (columns, rows): (usize, usize)) -> Result<Corners> {
         let rule = rule(LINE_POINTS);
         let (dx, dy) = (layer.grid.dx / layer.t, layer.grid.dy / layer.t);
         let side = |a: f64, b: f64| {
@@ -141,7 +152,7 @@ impl Corners {
         };
         let mut values = zeros((columns + 1) * (rows + 1), COATED)?;
         for (i, value) in values.iter_mut().enumerate() {
-            // Corners are at half-integer offsets, from 1/2 on. S is odd, so values at -1/2 are the opposites of those at 1/2.
+            // Corners are at half-integer offsets, from 1/2 on. S is odd, so that a value at -1/2 is the opposite of that at 1/2.
             let (x, y) = ((i % (columns + 1)) as f64 + 0.5, (i / (columns + 1)) as f64 + 0.5);
             *value = layer.t * (side(x * dx, y * dy) + side(y * dy, x * dx));
         }

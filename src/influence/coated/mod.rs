@@ -1,16 +1,16 @@
-//! Coefficients of bodies with a coating: a bonded elastic layer of thickness t on a half-space.
+//! Influence coefficients of bodies with a coating: a bonded elastic layer of thickness t on a half-space, the substrate.
 //!
 //! ```text
 //! A(X, Y) = sum over bodies of c_b [b L(X, Y) + (1/t) integral over the element of F_b(r/t) dA],   c_b = (1 - nu1)/(2 pi G1)
 //! ```
 //!
-//! L is the integral of 1/r ([`HalfSpace`]). The base b L is that of a half-space: of the layer's material, b = 1, at
-//! distances below t, and of the substrate's, b = B0, beyond. F_b is the radial correction to the base ([`Radial`]).
-//! With one base for all distances, either digits are lost or the integrand has a singularity. A body without a coating
-//! has b = 1 and no correction.
+//! L is the integral of 1/r over an element ([`HalfSpace`]). The base b L has the coefficients of a half-space: at distances below t that of the
+//! layer's material, b = 1, and beyond that of the substrate, b = B0. F_b is the radial correction to the base ([`Radial`]). With the same base
+//! at all distances, either digits would cancel or the integrand would have a singularity. A body without a coating has b = 1 and no correction.
 
+mod base;
+mod cache;
 mod hankel;
-mod known;
 mod layer;
 mod offsets;
 mod periodic;
@@ -27,9 +27,10 @@ mod waves;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+pub use base::Base;
 use offsets::{first_of_half, first_of_substrate, COATED};
 pub use periodic::CoatedPeriodic;
-pub use radial::{Base, Radial};
+pub use radial::Radial;
 pub use response::Response;
 pub use shear::{Across, Along};
 pub use tractions::Coat;
@@ -41,37 +42,40 @@ use super::HalfSpace;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
-use known::Known;
-use layer::Layer;
+use cache::Cache;
+use layer::LayerCorrection;
 
-/// One body: its coating, or none.
+/// One body, with or without a coating.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoatedBody {
     /// `(1 - nu)/(2 pi G)` of the material at the surface.
     pub compliance: f64,
-    /// Thickness, and radial functions.
+    /// The thickness of the coating, and its radial functions. `None`: there is no coating.
     pub layer: Option<(f64, Arc<Radial>)>,
 }
 
-static KNOWN: Known<Radial> = Known::new();
+/// The radial functions of the last materials.
+static CACHE: Cache<Radial> = Cache::new();
 
-/// The radial functions of a layer of `mu` times the substrate's shear modulus: made once for each pair of materials.
+/// The radial functions of a layer whose shear modulus is `mu` times the substrate's, with the Poisson ratios of layer and substrate. They are
+/// computed once for each set of materials, as long as the cache keeps them.
 pub fn radial(mu: f64, [nu1, nu2]: [f64; 2]) -> Arc<Radial> {
-    KNOWN.get([mu, nu1, nu2], || Radial::new(Transfer::new(mu, [nu1, nu2])))
+    CACHE.get([mu, nu1, nu2], || Radial::new(Transfer::new(mu, [nu1, nu2])))
 }
 
-/// Coefficients of two bodies of which one or both have a coating, on one grid.
+/// The influence coefficients of two bodies, of which at least one has a coating, on the offsets of one grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coated {
     bodies: [CoatedBody; 2],
     half_space: HalfSpace,
+    /// The number of elements in x.
     mx: usize,
-    /// `[ky][kx]`, offsets >= 0.
+    /// The coefficients `[ky][kx]` at offsets >= 0.
     table: Arc<Vec<f64>>,
 }
 
 impl Coated {
-    /// The coefficients of a grid.
+    /// Computes the coefficients of a grid.
     pub fn new(bodies: [CoatedBody; 2], grid: &Grid) -> Result<Coated> {
         // With the compliance 1/(pi E*) = 1 coefficients are integrals of 1/r.
         Coated::with_half_space(bodies, HalfSpace::new(grid.dx, grid.dy, PI), grid)
@@ -83,7 +87,7 @@ impl Coated {
             let first = first_of_half(grid, ky);
             half_space.fill_row(first as i64, ky as i64, &mut row[first..]);
             let [one, two] = bodies.each_ref().map(|body| body.first_of_substrate(grid, ky));
-            // The base of each body changes at a distance of its thickness.
+            // The base of each body changes at the distance of its thickness. Between these places one factor holds.
             let ends = [first, one.min(two).max(first), one.max(two).max(first), row.len()];
             for ends in ends.windows(2) {
                 let factor: f64 =
@@ -93,7 +97,7 @@ impl Coated {
         }
         for body in &bodies {
             if let Some((thickness, radial)) = &body.layer {
-                let layer = Layer { radial, t: *thickness, grid: *grid, half_space: &half_space };
+                let layer = LayerCorrection { radial, t: *thickness, grid: *grid, half_space: &half_space };
                 layer.add(body.compliance, &mut table)?;
             }
         }
@@ -102,7 +106,8 @@ impl Coated {
     }
 }
 
-/// Fills in the other half by symmetry, a few rows at a time, which share cache lines.
+/// Copies the coefficients at kx < ky from those at kx > ky, which are the same for square elements. The rows are taken in groups, because their
+/// values share cache lines.
 fn mirror(grid: &Grid, table: &mut [f64]) {
     const ROWS: usize = 8;
     let Grid { mx, my, .. } = *grid;
@@ -116,12 +121,12 @@ fn mirror(grid: &Grid, table: &mut [f64]) {
 }
 
 impl CoatedBody {
-    /// c B(k t), to three digits.
+    /// `c B(k t)` to three digits, for preconditioners.
     fn roughly(&self, k: f64) -> f64 {
         self.layer.as_ref().map_or(self.compliance, |(t, radial)| self.compliance * radial.roughly(k * t))
     }
 
-    /// c b: of the substrate's base, or of the layer's.
+    /// `c b`: with the base of the substrate, or with that of the layer.
     fn base(&self, of_substrate: bool) -> f64 {
         match &self.layer {
             Some((_, radial)) if of_substrate => self.compliance * radial.transfer.substrate,
@@ -129,17 +134,17 @@ impl CoatedBody {
         }
     }
 
-    /// The first offset in a row with the base of the substrate, or the row's end.
+    /// The first offset in row ky at which the substrate is the base; the end of the row if there is none.
     fn first_of_substrate(&self, grid: &Grid, ky: usize) -> usize {
         self.layer.as_ref().map_or(grid.mx, |(t, _)| first_of_substrate(*t, grid, ky))
     }
 
-    /// `u/p` of a uniform pressure without lateral strain: the compression of the layer.
+    /// The displacement by a uniform pressure of 1 without lateral strain: the compression of the layer.
     fn of_mean(&self) -> f64 {
         self.layer.as_ref().map_or(0.0, |(t, radial)| 2.0 * PI * self.compliance * t * radial.transfer.of_mean)
     }
 
-    /// `u/p` of a wave: `2 pi c/k B(k t)`.
+    /// The displacement by a pressure wave of amplitude 1 and wave number k: `2 pi c/k B(k t)`.
     pub fn of_wave(&self, k: f64) -> f64 {
         let layer = self.layer.as_ref().map_or(1.0, |(t, radial)| radial.transfer.at(k * t));
         2.0 * PI * self.compliance / k * layer
@@ -151,7 +156,7 @@ impl Kernel for Coated {
         let (x, y) = (kx.unsigned_abs() as usize, ky.unsigned_abs() as usize);
         match x < self.mx && y < self.table.len() / self.mx {
             true => self.table[y * self.mx + x],
-            // Beyond the grid.
+            // The offset lies beyond the table.
             false => self.beyond(x, y),
         }
     }
@@ -164,7 +169,7 @@ impl Kernel for Coated {
         out.iter_mut().zip(kx..).for_each(|(value, kx)| *value = self.at(kx, ky));
     }
 
-    // The largest aliases: k and k - 2 pi/d in each direction. All have the same |sin(k d/2)|.
+    // The sum contains the two largest aliases in each direction, k and k - 2 pi/d. Both have the same |sin(k d/2)|.
     fn wave(&self, grid: &Grid, kx: f64, ky: f64) -> Option<f64> {
         let aliases = |k: f64, d: f64| {
             let half = 0.5 * k * d;
@@ -194,7 +199,7 @@ impl Kernel for Coated {
 }
 
 impl Coated {
-    /// A coefficient that is not in the table.
+    /// Computes the coefficient at an offset beyond the table.
     fn beyond(&self, kx: usize, ky: usize) -> f64 {
         let (dx, dy) = (self.half_space.dx, self.half_space.dy);
         let (x, y) = (kx as f64 * dx, ky as f64 * dy);
@@ -204,7 +209,7 @@ impl Coated {
         let mut sum = self.half_space.at(kx as i64, ky as i64) * base;
         for body in &self.bodies {
             if let Some((t, radial)) = &body.layer {
-                let layer = Layer { radial, t: *t, grid, half_space: &self.half_space };
+                let layer = LayerCorrection { radial, t: *t, grid, half_space: &self.half_space };
                 let base = if is_far(body) { Base::Substrate } else { Base::Layer };
                 sum += body.compliance * layer.gauss(rule(5), (x, y), base);
             }

@@ -1,11 +1,11 @@
-//! The range of offsets to compute in a row.
+//! The offsets in a row at which coefficients are computed, and those with the base of the substrate.
 
 use crate::grid::Grid;
 
-/// The name of this memory in messages.
+/// The name of the memory of coefficients in messages.
 pub(super) const COATED: &str = "the coefficients of a coating";
 
-/// The first offset in x to compute in row ky. For square elements c(kx, ky) = c(ky, kx), so that earlier ones are known.
+/// The first offset in x at which row ky is computed. For square elements `c(kx, ky) = c(ky, kx)`, so that kx >= ky suffices.
 pub(super) fn first_of_half(grid: &Grid, ky: usize) -> usize {
     if grid.dx == grid.dy && grid.my <= grid.mx {
         ky.min(grid.mx)
@@ -14,9 +14,9 @@ pub(super) fn first_of_half(grid: &Grid, ky: usize) -> usize {
     }
 }
 
-/// The first offset in x of row ky whose base is the substrate of a layer of thickness t: at distances from t on. On elements longer than t all
-/// offsets have this base, also that of the loaded element. For a layer on a rigid body only its compression times t remains, without a difference of
-/// large numbers.
+/// The first offset in x of row ky at which the base is the substrate of a layer of thickness t: the first at a distance of at least t. If an
+/// element is longer than t, the substrate is the base at all offsets, also for the loaded element. For a layer on a rigid body only the
+/// compression of the layer then remains, without a difference of large numbers.
 pub(super) fn first_of_substrate(t: f64, grid: &Grid, ky: usize) -> usize {
     if t <= grid.dx.max(grid.dy) {
         0
@@ -25,7 +25,7 @@ pub(super) fn first_of_substrate(t: f64, grid: &Grid, ky: usize) -> usize {
     }
 }
 
-/// The first offset in x of row ky whose distance is at least `distance`; the end of the row if there is none.
+/// The first offset in x of row ky at a distance of at least `distance`; the end of the row if there is none.
 pub(super) fn first_beyond(distance: f64, grid: &Grid, ky: usize) -> usize {
     let y = ky as f64 * grid.dy;
     if y >= distance {

@@ -1,14 +1,14 @@
-//! Coated bodies in a scene with two periods.
+//! Influence coefficients of coated bodies in a scene with two periods.
 //!
-//! The half-space of the layer's material has the coefficients of [`Periodic`]. The changes by the coating are added as sums over
+//! The half-space of the layer's material has the coefficients of [`Periodic`]. What the coating adds to them is a sum over
 //! [`waves`](super::waves).
 //!
-//! *The mean.* As without a coating, the mean displacement of the half-spaces below is zero. A uniform pressure p compresses the layer by
-//! `p t/M` without lateral strain, with the oedometric modulus `M = 2 G (1 - nu)/(1 - 2 nu)`. This is a constant in all coefficients
+//! *The mean.* As without a coating, the mean displacement of the half-spaces is zero. In addition, a uniform pressure p compresses the layer by
+//! `p t/M`, without lateral strain, with the oedometric modulus `M = 2 G (1 - nu)/(1 - 2 nu)`. This compression is a constant in all coefficients
 //! ([`Kernel::constant`]).
 //!
-//! *Coarser grids.* If elements are too long for sums over waves, coefficients are means over the finer grid: the mean displacement of four
-//! elements by a pressure on four.
+//! *Coarser grids.* If the elements of a coarser grid are too long for sums over waves, the coefficients come from the finer grid: the mean
+//! displacement of four fine elements by a pressure on four.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -20,29 +20,32 @@ use crate::grid::Grid;
 use crate::influence::Periodic;
 use crate::memory::zeros;
 
-/// Longest element in thicknesses. Longer elements have too many aliases.
+/// The longest element, in thicknesses. For longer elements the sums have too many aliases.
 const LONGEST: f64 = 16.0;
-/// Longest element of a coarser grid in thicknesses. For longer elements, means over the finer grid are cheaper.
+/// The longest element of a coarser grid, in thicknesses. For longer ones, means over the finer grid are cheaper.
 const LONGEST_COARSE: f64 = 4.0;
 
-/// Coefficients of a period.
+/// The influence coefficients of two coated bodies on a grid that is one period in both directions.
 #[derive(Clone, Debug)]
 pub struct CoatedPeriodic {
-    /// The bodies and the half-space of the layers; none for joined elements.
+    /// The bodies, and the coefficients of the half-spaces of the layers' materials, from which coarser grids follow. `None` if the coefficients
+    /// are means over a finer grid.
     sums: Option<([CoatedBody; 2], Periodic)>,
-    /// Coefficients without their constant, at offsets up to half the period, `[ky][kx]`.
+    /// The coefficients without their constant, at offsets up to half the period, `[ky][kx]`.
     table: Arc<Vec<f64>>,
+    /// The numbers of elements of the grid in x and in y.
     mx: usize,
     my: usize,
     /// The displacement by a uniform pressure of 1.
     mean: f64,
+    /// Whether the coefficients contain the constant of this displacement.
     has_mean: bool,
-    /// The approximate response of the longest wave.
+    /// The approximate displacement by the longest pressure wave of amplitude 1.
     longest: f64,
 }
 
 impl CoatedPeriodic {
-    /// The coefficients of a grid, which is one period in both directions.
+    /// Computes the coefficients of a grid, which is one period in both directions. Refuses coatings that are too thin for sums over waves.
     pub fn new(bodies: [CoatedBody; 2], grid: &Grid) -> Result<CoatedPeriodic> {
         bodies.iter().try_for_each(|body| check(body, grid))?;
         let compliance: f64 = bodies.iter().map(|body| PI * body.compliance).sum();
@@ -50,6 +53,7 @@ impl CoatedPeriodic {
         CoatedPeriodic::with_half_space(bodies, half_space, grid)
     }
 
+    /// Adds the sums over waves to the coefficients of the half-space.
     fn with_half_space(bodies: [CoatedBody; 2], half_space: Periodic, grid: &Grid) -> Result<CoatedPeriodic> {
         let (row, rows) = grid.offsets((true, true));
         let mut changes: Vec<f64> = zeros(row * rows, COATED)?;
@@ -64,7 +68,7 @@ impl CoatedPeriodic {
         Ok(CoatedPeriodic { sums: Some((bodies, half_space)), table, mx, my, mean, has_mean: mean != 0.0, longest })
     }
 
-    /// The coefficients of a grid of joined elements.
+    /// The coefficients of a coarser grid as means over the elements of this one.
     fn joined(&self, coarse: &Grid) -> Result<CoatedPeriodic> {
         let (row, rows) = coarse.offsets((true, true));
         let parts = |m: usize, fine: usize, k: i64| match m < fine {
@@ -75,8 +79,10 @@ impl CoatedPeriodic {
         for (ky, out) in (0..).zip(table.chunks_exact_mut(row)) {
             for (kx, value) in (0..).zip(out) {
                 for (y, in_y) in parts(coarse.my, self.my, ky) {
-                    *value +=
-                        parts(coarse.mx, self.mx, kx).map(|(x, in_x)| in_x * in_y * self.own(x, y)).iter().sum::<f64>();
+                    *value += parts(coarse.mx, self.mx, kx)
+                        .map(|(x, in_x)| in_x * in_y * self.without_mean(x, y))
+                        .iter()
+                        .sum::<f64>();
                 }
             }
         }
@@ -84,17 +90,18 @@ impl CoatedPeriodic {
         Ok(CoatedPeriodic { sums: None, table: Arc::new(table), mx: coarse.mx, my: coarse.my, ..self.clone() })
     }
 
-    /// The coefficient without the constant.
-    fn own(&self, kx: i64, ky: i64) -> f64 {
+    /// The coefficient at an offset, without the constant.
+    fn without_mean(&self, kx: i64, ky: i64) -> f64 {
         self.table[Periodic::folded(ky, self.my) * (self.mx / 2 + 1) + Periodic::folded(kx, self.mx)]
     }
 
-    fn share(&self, response: f64) -> f64 {
+    /// The constant in all coefficients with which a uniform pressure of 1 has this response.
+    fn constant_of(&self, response: f64) -> f64 {
         response / (self.mx as f64 * self.my as f64)
     }
 }
 
-/// Refuses coatings with too many aliases.
+/// Refuses a coating that is thinner than 1/[`LONGEST`] of the longer side of an element.
 fn check(body: &CoatedBody, grid: &Grid) -> Result<()> {
     match &body.layer {
         Some((t, _)) if t * LONGEST < grid.dx.max(grid.dy) => Err(Error::Unsupported(format!(
@@ -110,7 +117,7 @@ fn check(body: &CoatedBody, grid: &Grid) -> Result<()> {
 
 impl Kernel for CoatedPeriodic {
     fn at(&self, kx: i64, ky: i64) -> f64 {
-        self.own(kx, ky) + self.constant()
+        self.without_mean(kx, ky) + self.constant()
     }
 
     fn repeats(&self, grid: &Grid) -> (bool, bool) {
@@ -119,7 +126,7 @@ impl Kernel for CoatedPeriodic {
 
     fn constant(&self) -> f64 {
         if self.has_mean {
-            self.share(self.mean)
+            self.constant_of(self.mean)
         } else {
             0.0
         }
@@ -134,12 +141,12 @@ impl Kernel for CoatedPeriodic {
     }
 
     fn constant_for(&self, response: f64) -> f64 {
-        self.share(response)
+        self.constant_of(response)
     }
 
-    // The mean gets at least the response of the longest wave, because a contact area couples the mean with waves.
+    // A uniform pressure gets at least the response of the longest wave, because a contact area couples the mean with waves.
     fn constant_for_inverse(&self) -> f64 {
-        (self.share(self.longest) - self.constant()).max(0.0)
+        (self.constant_of(self.longest) - self.constant()).max(0.0)
     }
 
     fn coarsen(&self, _fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {

@@ -1,8 +1,8 @@
-//! Polynomials on [-1, 1]: interpolation at Chebyshev nodes, coefficients of powers, and integrals.
+//! Polynomials on [-1, 1]: interpolation at Chebyshev nodes, conversion to powers, integrals and values.
 
 use std::f64::consts::PI;
 
-/// The i-th of m Chebyshev nodes.
+/// The i-th of m Chebyshev nodes of the first kind.
 pub fn node(i: usize, m: usize) -> f64 {
     angle(i, m).cos()
 }
@@ -11,7 +11,7 @@ fn angle(i: usize, m: usize) -> f64 {
     PI * (i as f64 + 0.5) / m as f64
 }
 
-/// The Chebyshev coefficients of the polynomial with these values at the M nodes.
+/// The Chebyshev coefficients of the polynomial with these values at the M Chebyshev nodes.
 pub fn chebyshev<const M: usize>(values: &[f64; M]) -> [f64; M] {
     std::array::from_fn(|k| {
         let sum: f64 = (0..M).map(|i| values[i] * (k as f64 * angle(i, M)).cos()).sum();
@@ -28,7 +28,7 @@ pub fn clenshaw(coefficients: &[f64], x: f64) -> f64 {
     x * one - two + coefficients[0]
 }
 
-/// The number of Chebyshev coefficients to keep, at least one. The absolute values of the others add up to at most `allowed`.
+/// The number of Chebyshev coefficients to keep, at least one: the absolute values of the dropped ones add up to at most `allowed`.
 pub fn terms(coefficients: &[f64], allowed: f64) -> usize {
     let mut dropped = 0.0;
     let is_needed = |c: &f64| {
@@ -38,9 +38,9 @@ pub fn terms(coefficients: &[f64], allowed: f64) -> usize {
     coefficients.iter().rposition(is_needed).map_or(1, |last| last + 1)
 }
 
-/// The coefficients of powers of a polynomial with at most M Chebyshev coefficients.
+/// Converts at most M Chebyshev coefficients to the coefficients of the powers of x.
 pub fn powers<const M: usize>(chebyshev: &[f64]) -> [f64; M] {
-    // The sum of c[k] T_k, each T_k by its recursion.
+    // The sum of `c[k] T_k`. `before` and `now` hold the powers of two successive T_k.
     let (mut before, mut now) = ([0.0; M], [0.0; M]);
     (before[0], now[1]) = (1.0, 1.0);
     let mut sum = [0.0; M];
@@ -58,7 +58,7 @@ pub fn powers<const M: usize>(chebyshev: &[f64]) -> [f64; M] {
     sum
 }
 
-/// The polynomial `start + factor * (integral from -1 to x)`. M must be N + 1.
+/// The polynomial `start + factor * (integral of the given one from -1 to x)`. M must be N + 1.
 pub fn integral<const N: usize, const M: usize>(polynomial: &[f64; N], factor: f64, start: f64) -> [f64; M] {
     let mut integral = [0.0; M];
     for (k, c) in polynomial.iter().enumerate() {
@@ -68,7 +68,7 @@ pub fn integral<const N: usize, const M: usize>(polynomial: &[f64; N], factor: f
     integral
 }
 
-/// The polynomial at x, by Horner's scheme.
+/// The value of the polynomial at x, by Horner's scheme.
 #[inline]
 pub fn evaluate(polynomial: &[f64], x: f64) -> f64 {
     polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c)

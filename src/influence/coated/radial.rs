@@ -1,25 +1,27 @@
-//! The radial functions of one pair of materials: the difference of a layer to the half-space, by the distance.
+//! The radial functions of one pair of materials: what a layer adds to the coefficients of a half-space, as a function of the distance rho in
+//! thicknesses.
 //!
 //! ```text
 //! F_b(rho) = integral from 0 to infinity of (B(s) - b) J0(s rho) ds,    M_b(rho) = integral from 0 to rho of F_b rho' drho'
 //! F_B0(rho) = F_1(rho) + (1 - B0)/rho
 //! ```
 //!
-//! with b = 1, the layer's own half-space, or b = B0 = B(0), the substrate's. F_1 is smooth at 0; F_B0 decays as `1/rho^3`. All
-//! singularities of both lie at `w = 4 + rho^2 <= 0`. So on a quarter of an octave of w, as `[2^k, 1.25 2^k]`, polynomials of degree 13 have
-//! the error `(9 + sqrt 80)^-14 = 3e-18` for a function like `w^-5/2` near 0. The bits of w give the quarter, and M is an integral of the
-//! polynomial, `rho drho = dw/2`. Below rho = 2 the polynomials are those of F_1, beyond those of F_B0.
+//! with b = 1, the half-space of the layer's material, or b = B0 = B(0), that of the substrate. F_1 is smooth at 0; F_B0 decays as `1/rho^3`. All
+//! singularities of both lie at `w = 4 + rho^2 <= 0`. Therefore both are polynomials of degree 13 on panels of w, each a quarter of an octave,
+//! such as `[2^k, 1.25 2^k]`. The error is `(9 + sqrt 80)^-14 = 3e-18` for a function like `w^-5/2` near 0. The bits of w give the number of the
+//! panel. M is an integral of the polynomial, by `rho drho = dw/2`. Below rho = 2 the polynomials are those of F_1, beyond those of F_B0.
 //!
-//! The values come from quadrature ([`Hankel`]). At `rho > 100 L`, with 1/L the distance of the nearest pole of B, the Taylor coefficients of
-//! B serve:
+//! The values at the nodes come from quadrature ([`Hankel`]). Beyond `rho = 100 L`, with 1/L the distance of the nearest pole of B from s = 0,
+//! asymptotic series with the Taylor coefficients of B are used:
 //!
 //! ```text
 //! F_B0 = -B2/rho^3 + 9 B4/rho^5 - 225 B6/rho^7 + 11025 B8/rho^9 - 893025 B10/rho^11
 //! M_B0 = B1 + B2/rho - 3 B4/rho^3 + 45 B6/rho^5 - 1575 B8/rho^7 + 99225 B10/rho^9
 //! ```
 //!
-//! L is about `1.75 mu` for stiff layers, the length over which they spread a load as membranes.
+//! For stiff layers L is about `1.75 mu`, the length over which they spread a load as membranes.
 
+use super::base::{Base, SMOOTH};
 use super::hankel::Hankel;
 use super::polynomial::{chebyshev, evaluate, integral, node, powers, terms};
 use super::response::{Response, TERMS};
@@ -27,64 +29,37 @@ use super::transfer::Transfer;
 use crate::blocks::LANES;
 use crate::influence::gauss;
 
-/// Most coefficients of a polynomial in w, of degree 13.
+/// The number of coefficients of a polynomial of degree 13.
 pub const P: usize = 14;
-/// Bound on the omitted terms of a polynomial, relative to the half-space's `b/rho`.
+/// The bound on the omitted terms of a polynomial, relative to the half-space's `b/rho`.
 const LEFT_OUT: f64 = 1e-15;
-/// w at rho = 2.
-const SMOOTH: f64 = 8.0;
 
-/// The base b of a radial function.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Base {
-    /// b = 1: the half-space of the layer's material.
-    Layer,
-    /// b = B(0): the half-space of the substrate.
-    Substrate,
-}
-
-impl Base {
-    /// The base that panels have at `w = 4 + rho^2`.
-    pub(super) fn at(w: f64) -> Base {
-        if w < SMOOTH {
-            Base::Layer
-        } else {
-            Base::Substrate
-        }
-    }
-
-    /// The factor on the difference of the half-spaces in a change of the base.
-    pub(super) fn to(self, other: Base) -> f64 {
-        match (self, other) {
-            (Base::Layer, Base::Substrate) => 1.0,
-            (Base::Substrate, Base::Layer) => -1.0,
-            _ => 0.0,
-        }
-    }
-}
-
-/// The radial functions of a layer of unit thickness.
+/// The radial functions F and M of a layer of unit thickness, as tables of polynomials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Radial<R = Transfer> {
-    /// B.
+    /// The response B.
     pub transfer: R,
+    /// The Taylor coefficients of B.
     taylor: [f64; TERMS],
     /// The panels of w from 4 on.
     panels: Vec<Panel>,
-    /// `M_1/rho^2` on the first panel.
+    /// The polynomial of `M_1/rho^2` on the first panel, where rho may be 0.
     mean: [f64; P],
-    /// The w at which the panels end.
+    /// The w at which the panels end. Beyond, the asymptotic series hold.
     far: f64,
-    /// B at [`FIRST`] and on, eight values an octave.
+    /// Values of B at s = [`FIRST`] and larger, eight for each octave.
     roughly: Vec<f64>,
 }
 
-/// F and M on one panel of w, by polynomials on [-1, 1].
+/// F and M on one panel of w, as polynomials on [-1, 1].
 #[derive(Clone, Debug, PartialEq)]
 struct Panel {
+    /// The coefficients of F.
     f: [f64; P],
-    /// Coefficients of f above [`LEFT_OUT`]: fewer far away, where F is small compared with the half-space.
+    /// The number of coefficients of F that are used. The rest is below [`LEFT_OUT`]. Far from the load, where F is small compared with the
+    /// half-space, fewer are needed.
     terms: usize,
+    /// The coefficients of M.
     m: [f64; P + 1],
 }
 
@@ -94,12 +69,13 @@ impl Panel {
     }
 }
 
-/// The first place of the rough values of B, and their octaves.
+/// The first s at which a rough value of B is stored.
 const FIRST: f64 = 1.0 / (1u64 << 32) as f64;
+/// The number of octaves of s over which rough values are stored.
 const OCTAVES: usize = 38;
 
 impl<R: Response> Radial<R> {
-    /// Computes the table of a layer, which takes milliseconds.
+    /// Computes the tables of a layer with this response. This takes milliseconds.
     pub fn new(transfer: R) -> Radial<R> {
         let taylor = transfer.taylor();
         let scale = transfer.substrate().max(1.0);
@@ -109,7 +85,7 @@ impl<R: Response> Radial<R> {
         let far = 4.0 * (1u64 << octaves) as f64;
         let hankel = Hankel::new(&transfer, pole, (far - 4.0).sqrt());
         let mut panels = Vec::new();
-        // M at the lower end: M_1, and from rho = 2 on M_B0.
+        // M at the lower end of the panel. It is M_1 below rho = 2 and M_B0 beyond; they differ by (1 - B0) rho.
         let mut before = 0.0;
         for panel in 0..4 * octaves {
             let (low, high) = ends_of(panel);
@@ -121,12 +97,12 @@ impl<R: Response> Radial<R> {
             panels.push(panel);
         }
         let mean = Radial::<R>::mean(&panels[0]);
-        let place = |k: usize| FIRST * (1u64 << (k / 8)) as f64 * (1.0 + (k % 8) as f64 / 8.0);
-        let roughly = (0..=8 * OCTAVES).map(|k| transfer.at(place(k))).collect();
+        let s_of = |k: usize| FIRST * (1u64 << (k / 8)) as f64 * (1.0 + (k % 8) as f64 / 8.0);
+        let roughly = (0..=8 * OCTAVES).map(|k| transfer.at(s_of(k))).collect();
         Radial { transfer, taylor, panels, mean, far, roughly }
     }
 
-    /// F and M for w between `low` and `high`; M is `before` at the lower end.
+    /// F and M on the panel between the w `low` and `high`. `before` is M at its lower end.
     fn panel(hankel: &Hankel, transfer: &R, (low, high): (f64, f64), before: f64) -> Panel {
         let rho = |x: f64| (0.5 * (low + high) + 0.5 * (high - low) * x - 4.0).max(0.0).sqrt();
         let is_near = high <= SMOOTH;
@@ -138,13 +114,14 @@ impl<R: Response> Radial<R> {
         Panel { f, terms, m: integral(&f, 0.25 * (high - low), before) }
     }
 
-    /// `M_1/rho^2 = integral from 0 to 1 of F_1(rho sqrt(x)) dx/2` on the first panel, by the polynomial there, which the rule integrates exactly.
+    /// `M_1/rho^2 = integral from 0 to 1 of F_1(rho sqrt(x)) dx/2` on the first panel. F_1 is the panel's polynomial, which the Gauss rule
+    /// integrates exactly.
     fn mean(first: &Panel) -> [f64; P] {
         let rule = gauss::rule(P.div_ceil(2));
-        let value = |place: f64| {
-            // The part of the panel from w = 4, where rho^2 is 0.
-            let way = 0.5 * (1.0 + place);
-            let f = |(x, weight): &(f64, f64)| weight * evaluate(first.f(), 2.0 * way * x - 1.0);
+        let value = |node: f64| {
+            // The part of the panel between w = 4, where rho^2 is 0, and the node.
+            let part = 0.5 * (1.0 + node);
+            let f = |(x, weight): &(f64, f64)| weight * evaluate(first.f(), 2.0 * part * x - 1.0);
             0.5 * rule.iter().map(f).sum::<f64>()
         };
         powers(&chebyshev(&std::array::from_fn::<f64, P, _>(|i| value(node(i, P)))))
@@ -155,7 +132,7 @@ impl<R: Response> Radial<R> {
         self.panels.len()
     }
 
-    /// B(s) to three digits, for preconditioners: linear between places an eighth of an octave apart.
+    /// B(s) to three digits, for preconditioners: linear interpolation between stored values, which are an eighth of an octave apart.
     pub fn roughly(&self, s: f64) -> f64 {
         let eighths = (s / FIRST).to_bits() >> 49;
         let first = 1023 << 3;
@@ -164,24 +141,24 @@ impl<R: Response> Radial<R> {
         }
         let k = (eighths - first) as usize;
         let Some([low, high]) = self.roughly.get(k..k + 2) else { return 1.0 };
-        let place = f64::from_bits(eighths << 49) * FIRST;
-        let width = f64::from_bits((eighths + 1) << 49) * FIRST - place;
-        low + (high - low) * (s - place) / width
+        let s_low = f64::from_bits(eighths << 49) * FIRST;
+        let width = f64::from_bits((eighths + 1) << 49) * FIRST - s_low;
+        low + (high - low) * (s - s_low) / width
     }
 
-    /// F at a distance rho in thicknesses, which is positive with the substrate as base.
+    /// F at the distance rho in thicknesses. rho must be positive if the substrate is the base.
     pub fn f(&self, rho: f64, base: Base) -> f64 {
         self.f_at_square(rho * rho, base)
     }
 
-    /// F at a square of rho.
+    /// F at the distance whose square is `rho2`.
     pub fn f_at_square(&self, rho2: f64, base: Base) -> f64 {
         let w = 4.0 + rho2;
         let value = self.on_panel(w, Panel::f).unwrap_or_else(|| self.far_f(rho2.sqrt()));
         self.change(w, base).map_or(value, |change| value + change / rho2.sqrt())
     }
 
-    /// A function of the panels at w, if there is a panel.
+    /// The value at w of F or M, whichever polynomial `of` takes from the panel; `None` beyond the panels.
     fn on_panel(&self, w: f64, of: impl Fn(&Panel) -> &[f64]) -> Option<f64> {
         (w < self.far).then(|| {
             let (panel, (low, high)) = panel_of(w);
@@ -189,13 +166,14 @@ impl<R: Response> Radial<R> {
         })
     }
 
-    /// The change of `F rho` and of `M/rho` from the base that panels have at w to another one.
+    /// What has to be added to `F rho` and to `M/rho` if `base` is not the base of the panel at w; `None` if it is.
     fn change(&self, w: f64, base: Base) -> Option<f64> {
         let change = Base::at(w).to(base) * (1.0 - self.transfer.substrate());
         (change != 0.0).then_some(change)
     }
 
-    /// `out[k]` is F at distance `sqrt((x + k dx)^2 + y^2)`, all in thicknesses, x and y >= 0: a run of places with one polynomial at a time.
+    /// Fills `out[k]` with F at the distance `sqrt((x + k dx)^2 + y^2)`; x and y are not negative, and all lengths are in thicknesses. Places on
+    /// one panel are computed together.
     pub fn fill_f(&self, (x, dx, y): (f64, f64, f64), base: Base, out: &mut [f64]) {
         let w = |k: usize| {
             let x = x + k as f64 * dx;
@@ -213,7 +191,7 @@ impl<R: Response> Radial<R> {
                 return;
             }
             let (panel, (low, high)) = panel_of(start);
-            // The first place beyond the panel up to round-off, where its polynomial still holds.
+            // The first place beyond the panel is included: it may be on the panel up to round-off, and the polynomial still holds there.
             let beyond = ((high - 4.0 - y * y).max(0.0).sqrt() - x) / dx;
             let end = if beyond < out.len() as f64 { (beyond as usize).max(first) + 1 } else { out.len() };
             let (polynomial, middle, scale) = (self.panels[panel].f(), 0.5 * (low + high), 2.0 / (high - low));
@@ -227,34 +205,36 @@ impl<R: Response> Radial<R> {
         }
     }
 
-    /// M at a distance rho in thicknesses.
+    /// M at the distance rho in thicknesses.
     pub fn m(&self, rho: f64, base: Base) -> f64 {
         let w = 4.0 + rho * rho;
         let value = self.on_panel(w, |panel| &panel.m).unwrap_or_else(|| self.far_m(rho));
         self.change(w, base).map_or(value, |change| value + change * rho)
     }
 
-    /// `M/rho^2` at a square of rho, which may be 0 with the layer as base.
+    /// `M/rho^2` at the distance whose square is `rho2`, which may be 0 if the layer is the base.
     pub fn mean_at_square(&self, rho2: f64, base: Base) -> f64 {
         let (w, (low, high), rho) = (4.0 + rho2, ends_of(0), rho2.sqrt());
-        let less = 1.0 - self.transfer.substrate();
+        let one_minus_substrate = 1.0 - self.transfer.substrate();
         if w < high {
             let mean = evaluate(&self.mean, (w - 0.5 * (low + high)) * (2.0 / (high - low)));
-            return if base == Base::Layer { mean } else { mean + less / rho };
+            return if base == Base::Layer { mean } else { mean + one_minus_substrate / rho };
         }
         match (w < self.far, base) {
             (true, _) => self.m(rho, base) / rho2,
             (false, Base::Substrate) => self.far_m(rho) / rho2,
-            (false, Base::Layer) => self.far_m(rho) / rho2 - less / rho,
+            (false, Base::Layer) => self.far_m(rho) / rho2 - one_minus_substrate / rho,
         }
     }
 
+    /// F_B0 beyond the panels, by its asymptotic series.
     fn far_f(&self, rho: f64) -> f64 {
         let (b, q) = (&self.taylor, 1.0 / (rho * rho));
         let sum = -b[2] + q * (9.0 * b[4] + q * (-225.0 * b[6] + q * (11025.0 * b[8] - q * 893_025.0 * b[10])));
         sum * q / rho
     }
 
+    /// M_B0 beyond the panels, by its asymptotic series.
     fn far_m(&self, rho: f64) -> f64 {
         let (b, q) = (&self.taylor, 1.0 / (rho * rho));
         let sum = b[2] + q * (-3.0 * b[4] + q * (45.0 * b[6] + q * (-1575.0 * b[8] + q * 99225.0 * b[10])));
@@ -262,10 +242,10 @@ impl<R: Response> Radial<R> {
     }
 }
 
-/// The places computed at a time.
+/// The numbers of the places that are computed at a time.
 const OFFSETS: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
-/// `polynomial(((x + k dx)^2 + shift) scale)`.
+/// Fills `run[k]` with `polynomial(((x + k dx)^2 + shift) scale)`.
 #[allow(clippy::needless_range_loop)] // indices, as a vector has them
 fn fill_run(polynomial: &[f64], (x, dx, shift, scale): (f64, f64, f64, f64), run: &mut [f64]) {
     for (block, out) in run.chunks_mut(LANES).enumerate() {
@@ -284,16 +264,16 @@ fn fill_run(polynomial: &[f64], (x, dx, shift, scale): (f64, f64, f64, f64), run
     }
 }
 
-/// The panel of w >= 4, and its ends. Its number is the exponent and the first two bits of w.
+/// The panel that contains w >= 4, and its ends. The exponent and the first two bits of the mantissa of w are its number.
 pub(super) fn panel_of(w: f64) -> (usize, (f64, f64)) {
     let panel = (w.to_bits() >> 50) as usize - FIRST_PANEL;
     (panel, ends_of(panel))
 }
 
-/// Exponent and first two bits of 4.
+/// The exponent and the first two bits of the mantissa of 4.
 const FIRST_PANEL: usize = (4f64.to_bits() >> 50) as usize;
 
-/// The ends of a panel.
+/// The values of w at the ends of a panel.
 pub(super) fn ends_of(panel: usize) -> (f64, f64) {
     let end = |panel: usize| f64::from_bits(((panel + FIRST_PANEL) as u64) << 50);
     (end(panel), end(panel + 1))

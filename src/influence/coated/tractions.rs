@@ -1,56 +1,61 @@
-//! Displacements by tractions on coated surfaces, less those on half-spaces.
+//! The displacements by tractions on coated surfaces, less those of half-spaces.
 //!
-//! With the responses L along and T across the wave vector ([`Along`](super::shear::Along), [`Across`](super::shear::Across)) a traction wave
-//! displaces by `(1/(G1 k))` times
+//! Let L be the response along the wave vector and T that across it ([`Along`](super::shear::Along), [`Across`](super::shear::Across)). A
+//! traction wave of amplitude q displaces the surface by `1/(G1 k)` times
 //!
 //! ```text
 //! ((1 - nu1) L k k^T/k^2 + T (1 - k k^T/k^2)) q
 //! ```
 //!
-//! The inverse transform of `(B - b)/k k_i k_j/k^2` is `d_i d_j Psi/(2 pi t)` in lengths of t, with a function of the distance rho alone. Its
-//! Laplacian is the radial function F_b of B, and its slope `M_b/rho` ([`Radial`]). As for pressures b = 1, a half-space of the layer's material,
-//! serves at distances below t, and b = B(0), the substrate, beyond:
+//! Let B be one of these responses and b its base, as for pressures: b = 1 at distances below t, a half-space of the layer's material, and b =
+//! B(0) beyond, the substrate. The inverse transform of `(B - b)/k k_i k_j/k^2` is `d_i d_j Psi/(2 pi t)`, with lengths in units of t and a
+//! function Psi of the distance rho alone. The Laplacian of Psi is the radial function F_b of B, and its slope is `M_b/rho` ([`Radial`]):
 //!
 //! ```text
-//! d_x d_x Psi = g + (F - 2 g) cos^2       X = integral over the element       g = M/rho^2
-//! d_y d_y Psi = g + (F - 2 g) sin^2       Y
-//! d_x d_y Psi = (F - 2 g) cos sin         Z
+//! d_x d_x Psi = g + (F - 2 g) cos^2       integral over the element: X       g = M/rho^2
+//! d_y d_y Psi = g + (F - 2 g) sin^2       integral over the element: Y
+//! d_x d_y Psi = (F - 2 g) cos sin         integral over the element: Z
 //!
 //! Axx = (1 - nu1) X(L) + Y(T),    Ayy = (1 - nu1) Y(L) + X(T),    Axy = (1 - nu1) Z(L) - Z(T)       in 1/(2 pi G1) of one body
 //! ```
 //!
-//! Up to [`CORNERS`] diagonals of the element X and Y are differences over its corners of `T(x, y)` and of `T(y, x)`, as in the normal
-//! coefficients (`layer.rs`). Z is a difference of Psi, whose differences along an edge are integrals of its slope. Beyond, and for layers
-//! much thicker than elements are long, tensor Gauss serves. Offsets need not be whole: steps of rolling end between the centres.
+//! Up to a distance of [`CORNERS`] diagonals of the element, X and Y are corner differences of `T(x, y)` and of `T(y, x)`, as in the coefficients
+//! of pressures (`layer.rs`). Z is a corner difference of Psi, and its differences along an edge are integrals of its slope. At larger distances,
+//! and for layers that are much thicker than elements are long, tensor Gauss quadrature is used. Offsets need not be integers, because steps of
+//! rolling end between the centres.
 
 use std::sync::Arc;
 
-use super::known::Known;
+use super::base::Base;
+use super::cache::Cache;
 use super::layer::{CORNERS, LINE_POINTS};
-use super::radial::{Base, Radial};
+use super::radial::Radial;
 use super::response::Response;
 use super::tensor::Tensor;
 use crate::influence::gauss::rule;
 
-/// Shear modulus of the layer over that of the substrate from which the layer spreads loads as a membrane.
+/// The ratio of the shear moduli of layer and substrate from which the layer counts as a membrane, which spreads loads over a long distance.
 const MEMBRANE: f64 = 30.0;
-/// Points a side of tensor Gauss up to these distances, in longer sides of an element. The relative error on a function like 1/r,
-/// `(n!)^4/((2n + 1)((2n)!)^2) r^-2n`, is at most 3e-13 where a rule begins; the last rule begins at 400.
+/// The number of points per side of tensor Gauss quadrature, up to each distance in longer sides of an element. The relative error on a function
+/// like 1/r, `(n!)^4/((2n + 1)((2n)!)^2) r^-2n`, is at most 3e-13 where a rule begins; the last rule begins at 400.
 const POINTS: [(f64, usize); 4] = [(12.0, 7), (40.0, 4), (400.0, 3), (f64::INFINITY, 2)];
 
-static KNOWN: Known<Tensor> = Known::new();
+/// The tables of the last materials.
+static CACHE: Cache<Tensor> = Cache::new();
 
-/// One coating that both bodies have.
+/// A coating that both bodies have alike, for tractions.
 #[derive(Clone, Debug)]
 pub struct Coat {
+    /// The radial functions of a layer of unit thickness.
     tensor: Arc<Tensor>,
+    /// The thickness.
     t: f64,
 }
 
 impl Coat {
-    /// A layer of thickness t and of `mu` times the substrate's shear modulus, with both Poisson ratios.
+    /// A layer of thickness t whose shear modulus is `mu` times the substrate's, with the Poisson ratios of layer and substrate.
     pub fn new(t: f64, mu: f64, nu: [f64; 2]) -> Coat {
-        Coat { tensor: KNOWN.get([mu, nu[0], nu[1]], || Tensor::new(mu, nu)), t }
+        Coat { tensor: CACHE.get([mu, nu[0], nu[1]], || Tensor::new(mu, nu)), t }
     }
 
     /// Whether the coating is so much stiffer than the substrate that it spreads loads as a membrane, over many elements.
@@ -58,19 +63,20 @@ impl Coat {
         self.tensor.across.transfer.substrate() >= MEMBRANE
     }
 
-    /// The responses along and across a traction wave of wave number k, in `1/(G1 k)` of one body.
+    /// The displacements of one body by a traction wave of amplitude 1 and wave number k, along and across the wave vector, in units of `1/(G1
+    /// k)`.
     pub fn of_wave(&self, k: f64) -> [f64; 2] {
-        let Tensor { along, across, kept, .. } = &*self.tensor;
-        [kept * along.transfer.at(k * self.t), across.transfer.at(k * self.t)]
+        let Tensor { along, across, one_minus_nu, .. } = &*self.tensor;
+        [one_minus_nu * along.transfer.at(k * self.t), across.transfer.at(k * self.t)]
     }
 
-    /// The coat in other units of length.
+    /// The coating with `length` as the unit of lengths.
     pub fn in_units_of(&self, length: f64) -> Coat {
         Coat { t: self.t / length, ..self.clone() }
     }
 
-    /// The base half-space of the coefficients at an offset, and the terms to be added to `pi G1` times its Axx, Ayy, Axy (both bodies).
-    /// Offsets are in elements `dx` by `dy`.
+    /// The coefficients at an offset in elements `dx` by `dy`: the base half-space, and what has to be added to `pi G1` times its Axx, Ayy and
+    /// Axy (of both bodies).
     pub fn at(&self, (x, y): (f64, f64), (dx, dy): (f64, f64)) -> (Base, [f64; 3]) {
         let place = Place::new([x.abs() * dx, y.abs() * dy].map(|x| x / self.t), [dx / self.t, dy / self.t]);
         let sign = match (x, y) {
@@ -87,53 +93,56 @@ impl Coat {
     }
 }
 
-/// A place beside a loaded element, in thicknesses.
+/// The position of a point relative to a loaded element, in thicknesses, and the method for this distance.
 struct Place {
-    /// x and y of the offset, not negative.
-    at: [f64; 2],
+    /// The offset of the point from the element's centre in x and y, not negative.
+    offset: [f64; 2],
     /// The element's sides.
     size: [f64; 2],
+    /// The half-space that is the base there.
     base: Base,
-    /// Points a side of tensor Gauss; none: differences over the corners.
+    /// The number of points per side of tensor Gauss quadrature. `None`: corner differences.
     points: Option<usize>,
 }
 
 impl Place {
-    fn new(at: [f64; 2], size: [f64; 2]) -> Place {
-        let (distance, longer) = (at[0].hypot(at[1]), size[0].max(size[1]));
-        // F and g are smooth on the scale t as well, which is 1 here.
+    fn new(offset: [f64; 2], size: [f64; 2]) -> Place {
+        let (distance, longer) = (offset[0].hypot(offset[1]), size[0].max(size[1]));
+        // F and g are smooth also on the scale t, which is 1 here.
         let smooth = distance.max(1.0) / longer;
         let is_near = smooth <= POINTS[0].0 && distance <= CORNERS * size[0].hypot(size[1]);
         let points = POINTS.iter().find(|(last, _)| smooth <= *last).map(|(_, points)| *points);
         let base = if (if is_near { longer } else { distance }) < 1.0 { Base::Layer } else { Base::Substrate };
-        Place { at, size, base, points: points.filter(|_| !is_near) }
+        Place { offset, size, base, points: points.filter(|_| !is_near) }
     }
 
+    /// The terms of Axx, Ayy and Axy by tensor Gauss quadrature.
     fn by_gauss(&self, tensor: &Tensor, rule: &[(f64, f64)]) -> [f64; 3] {
-        let [[x, y], [dx, dy]] = [self.at, self.size];
+        let [[x, y], [dx, dy]] = [self.offset, self.size];
         let mut sums = [0.0; 3];
         for (sx, wx) in rule {
             let x = x + (sx - 0.5) * dx;
             for (sy, wy) in rule {
                 let y = y + (sy - 0.5) * dy;
-                let ([all, turning], weight) = (tensor.at_square(x * x + y * y, self.base), wx * wy);
-                sums[0] += weight * (all + turning * x * x);
-                sums[1] += weight * (all + turning * y * y);
-                sums[2] += weight * (turning * x * y);
+                let ([isotropic, directional], weight) = (tensor.at_square(x * x + y * y, self.base), wx * wy);
+                sums[0] += weight * (isotropic + directional * x * x);
+                sums[1] += weight * (isotropic + directional * y * y);
+                sums[2] += weight * (directional * x * y);
             }
         }
         sums.map(|sum| sum * dx * dy)
     }
 
+    /// The terms of Axx, Ayy and Axy by corner differences.
     fn near(&self, tensor: &Tensor) -> [f64; 3] {
         let (along, across) = (self.by_corners(&tensor.along), self.by_corners(&tensor.across));
-        let kept = tensor.kept;
-        [kept * along[0] + across[1], kept * along[1] + across[0], kept * along[2] - across[2]]
+        let one_minus_nu = tensor.one_minus_nu;
+        [one_minus_nu * along[0] + across[1], one_minus_nu * along[1] + across[0], one_minus_nu * along[2] - across[2]]
     }
 
-    /// X, Y and Z.
+    /// X, Y and Z of one response by corner differences.
     fn by_corners<R: Response>(&self, radial: &Radial<R>) -> [f64; 3] {
-        let ends = |k: usize| [self.at[k] - 0.5 * self.size[k], self.at[k] + 0.5 * self.size[k]];
+        let ends = |k: usize| [self.offset[k] - 0.5 * self.size[k], self.offset[k] + 0.5 * self.size[k]];
         let ([xm, xp], [ym, yp], of) = (ends(0), ends(1), (radial, self.base));
         let corners = |f: &dyn Fn(f64, f64) -> f64| f(xp, yp) - f(xp, ym) - f(xm, yp) + f(xm, ym);
         let rising = |x: f64| along_ray(of, ym.hypot(x), yp.hypot(x));
@@ -141,7 +150,7 @@ impl Place {
     }
 }
 
-/// `integral from 0 to b of a M(r)/r^2 dy`, `r^2 = a^2 + y^2`: odd in both.
+/// `integral from 0 to b of a M(r)/r^2 dy` with `r^2 = a^2 + y^2`. It is odd in a and in b.
 fn side<R: Response>((radial, base): (&Radial<R>, Base), a: f64, b: f64) -> f64 {
     let (height, end) = (a.abs(), (b / a).abs().asinh());
     if a == 0.0 || !end.is_finite() {
@@ -150,7 +159,7 @@ fn side<R: Response>((radial, base): (&Radial<R>, Base), a: f64, b: f64) -> f64 
     let at = |(u, w): &(f64, f64)| {
         let cosh = (end * u).cosh();
         let m = match base {
-            // The mean keeps all digits where M is small.
+            // `M/r^2` keeps all digits where M is small.
             Base::Layer => radial.mean_at_square((height * cosh).powi(2), base) * (height * cosh) * height,
             Base::Substrate => radial.m(height * cosh, base) / cosh,
         };
@@ -164,7 +173,7 @@ fn side<R: Response>((radial, base): (&Radial<R>, Base), a: f64, b: f64) -> f64 
     }
 }
 
-/// `Psi(to) - Psi(from)`, by the slope M/rho in `v = asinh(rho/2)`.
+/// `Psi(to) - Psi(from)`, by integration of the slope M/rho over `v = asinh(rho/2)`.
 fn along_ray<R: Response>((radial, base): (&Radial<R>, Base), from: f64, to: f64) -> f64 {
     let (start, end) = ((0.5 * from).asinh(), (0.5 * to).asinh());
     let at = |(u, w): &(f64, f64)| {

@@ -1,10 +1,12 @@
-//! The response of a coating to the waves of a period.
+//! The response of a coating to the pressure waves of a period.
 //!
-//! The response to wave k is the sum over k and its aliases `k + 2 pi (a/dx, b/dy)` of `2 pi c (B(k t) - 1)/k sinc(kx dx/2) sinc(ky dy/2)`,
-//! which decays as `exp(-2 k t)`. Thin coatings have many aliases. The first aliases, for slender elements those along the longer side, are
-//! computed for each wave. The sum of all others is a smooth function of the wave on `[0, pi/dx] x [0, pi/dy]`. Its singularities are those
-//! of `1/k`, at a distance from each end of at least half the interval. Interpolation at n Chebyshev nodes in each direction thus has the
-//! error `r^-n`, `r + 1/r = 2 + 2 sqrt(2)`: 1e-16 for n = 24. On grids with fewer waves the sum is taken for each wave.
+//! What the coating adds to the response to a wave k is the sum over k and its aliases `k + 2 pi (a/dx, b/dy)` of `2 pi c (B(k t) - 1)/k sinc(kx
+//! dx/2) sinc(ky dy/2)`. Its terms decay as `exp(-2 k t)`, so that thin coatings have many aliases. They are summed in two groups:
+//!
+//! * the first aliases, and for slender elements those along the longer side, are computed for each wave;
+//! * the sum of all others is a smooth function of the wave on `[0, pi/dx] x [0, pi/dy]`, and is interpolated. Its singularities are those of
+//!   `1/k`, at a distance from each end of at least half the interval. Therefore interpolation at n Chebyshev nodes in each direction has the
+//!   error `r^-n`, `r + 1/r = 2 + 2 sqrt(2)`: 1e-16 for n = 24. On grids with fewer waves than nodes the sum is computed for each wave.
 
 use std::f64::consts::PI;
 
@@ -18,17 +20,17 @@ use crate::memory::{collected, computed, zeros};
 
 /// The k t beyond which aliases are dropped: `exp(-2 k t) (k t)^2` is 1.7e-15 there.
 const FADED: f64 = 20.0;
-/// Nodes of the interpolation of aliases, in each direction.
+/// The number of nodes of the interpolation in each direction.
 const NODES: usize = 24;
-/// The name of this memory in messages.
+/// The name of the memory of waves in messages.
 const WAVES: &str = "the waves of a coating";
 
-/// Adds the responses to all waves, `[bin in y][bin in x]`.
+/// Adds what the coating of a body contributes to the responses to all waves, `waves[bin in y][bin in x]`.
 pub fn add(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
     let Some((t, _)) = body.layer else { return Ok(()) };
     let directions = [(grid.dx, grid.mx), (grid.dy, grid.my)];
     add_nearest(body, grid, waves)?;
-    // The longest alias is that of the shortest wave.
+    // The longest of all aliases is that of the shortest wave. If it has faded, all have.
     if PI * t > FADED * grid.dx.max(grid.dy) {
         return Ok(());
     }
@@ -63,23 +65,25 @@ pub fn add(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
     Ok(())
 }
 
-/// The aliases that are computed for each wave: numbers in x and in y up to these, of either sign; one of both is 0.
+/// The largest numbers of aliases in x and in y, with either sign, that are computed for each wave. Only the direction of the longer side has
+/// such aliases.
 fn nearest(grid: &Grid) -> (i64, i64) {
-    // Aliases of a wave number below that of the shortest wave in the other direction.
+    // Alias a has a wave number of at least (2 |a| - 1) pi/d. It is computed if this is less than that of the shortest wave in the other
+    // direction.
     let last = |ratio: f64| (0.5 * (1.0 + ratio)).ceil().min(1e6) as i64 - 1;
     (last(grid.dx / grid.dy).max(0), last(grid.dy / grid.dx).max(0))
 }
 
-/// Adds the nearest aliases of all waves except the constant one.
+/// Adds, for all waves except the constant one, the aliases up to [`nearest`].
 fn add_nearest(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
     let Some((t, radial)) = &body.layer else { return Ok(()) };
     let ((row, rows), (last_x, last_y)) = (grid.offsets((true, true)), nearest(grid));
     let [of_x, of_y] = [(grid.dx, grid.mx), (grid.dy, grid.my)]
         .map(|(d, m)| move |bin: usize, number: i64| alias(d / t, PI * bin as f64 / m as f64, number));
     let scale = 2.0 * PI * body.compliance * t;
-    for a in (-last_x..=last_x).filter(|&a| is_left(of_x(0, a), of_x(row - 1, a))) {
+    for a in (-last_x..=last_x).filter(|&a| has_wave_left(of_x(0, a), of_x(row - 1, a))) {
         let in_x = collected((0..row).map(|i| of_x(i, a)), WAVES)?;
-        for b in (-last_y..=last_y).filter(|&b| is_left(of_y(0, b), of_y(rows - 1, b))) {
+        for b in (-last_y..=last_y).filter(|&b| has_wave_left(of_y(0, b), of_y(rows - 1, b))) {
             for (j, waves) in waves.chunks_exact_mut(row).enumerate() {
                 let (sy, mean_y) = of_y(j, b);
                 if sy.abs() > FADED {
@@ -99,12 +103,12 @@ fn add_nearest(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> 
     Ok(())
 }
 
-/// Whether some wave between two has not faded.
-fn is_left((first, _): (f64, f64), (last, _): (f64, f64)) -> bool {
+/// Whether some wave between the `first` and the `last` has not faded.
+fn has_wave_left((first, _): (f64, f64), (last, _): (f64, f64)) -> bool {
     first.abs().min(last.abs()) <= FADED
 }
 
-/// The sum over all aliases at a place except the nearest.
+/// The sum over all aliases at a place, except those up to [`nearest`].
 fn others(body: &CoatedBody, (last_x, last_y): (i64, i64), in_x: &Place, in_y: &Place) -> f64 {
     let Some((t, radial)) = &body.layer else { return 0.0 };
     let mut sum = 0.0;
@@ -119,27 +123,29 @@ fn others(body: &CoatedBody, (last_x, last_y): (i64, i64), in_x: &Place, in_y: &
     2.0 * PI * body.compliance * t * sum
 }
 
-/// An alias of a wave in one direction: `k t`, and the mean of the wave over an element of d thicknesses; the wave turns by `angle` over
-/// half of the element.
+/// An alias of a wave in one direction: its `k t`, and its mean over an element of d thicknesses. `angle` is the phase of the wave over half an
+/// element.
 fn alias(d: f64, angle: f64, number: i64) -> (f64, f64) {
     let half = angle + PI * number as f64;
     let mean = if half == 0.0 { 1.0 } else { angle.sin() / half };
     (2.0 * half / d, if number % 2 == 0 { mean } else { -mean })
 }
 
-/// The aliases of a wave in one direction that have not faded: their numbers, `k t`, and the mean of each over an element.
+/// The aliases of a wave in one direction that have not faded: the number, `k t`, and the mean over an element of each.
 type Place = Vec<(i64, (f64, f64))>;
 
-/// One direction: the places at which aliases are summed, and the interpolation from these to the bins.
+/// One direction: the places at which aliases are summed, and the weights of the interpolation from these to the bins.
 struct Direction {
+    /// The number of bins.
     bins: usize,
+    /// The places: Chebyshev nodes, or the bins themselves.
     places: Vec<Place>,
-    /// `[place][bin]`; empty: places are bins.
+    /// The weights `[place][bin]` of the interpolation; empty if the places are the bins.
     weights: Vec<f64>,
 }
 
 impl Direction {
-    /// The direction of m elements of size d, in thicknesses.
+    /// The direction with m elements of d thicknesses each.
     fn new(d: f64, m: usize) -> Result<Direction> {
         let bins = m / 2 + 1;
         let angle_of = |bin: usize| PI * bin as f64 / m as f64;
@@ -147,7 +153,7 @@ impl Direction {
             let places = (0..bins).map(|bin| Direction::place(d, angle_of(bin))).collect();
             return Ok(Direction { bins, places, weights: Vec::new() });
         }
-        // Half the angle of a wave over an element.
+        // The phase of the wave of node n over half an element.
         let node = |n: usize| 0.25 * PI * (1.0 + (PI * (n as f64 + 0.5) / NODES as f64).cos());
         let places = (0..NODES).map(|n| Direction::place(d, node(n))).collect();
         let barycentric = |n: usize| (PI * (n as f64 + 0.5) / NODES as f64).sin() * if n % 2 == 0 { 1.0 } else { -1.0 };
@@ -166,16 +172,18 @@ impl Direction {
         Ok(Direction { bins, places, weights })
     }
 
+    /// The aliases of the wave with this phase over half an element.
     fn place(d: f64, angle: f64) -> Place {
         let last = (FADED * d / (2.0 * PI)).ceil() as i64 + 1;
         (-last..=last).map(|a| (a, alias(d, angle, a))).filter(|(_, (s, _))| s.abs() <= FADED).collect()
     }
 
+    /// Whether the places are nodes, from which the bins are interpolated.
     fn is_interpolated(&self) -> bool {
         !self.weights.is_empty()
     }
 
-    /// Calls `take(place, weight)` for each place that a bin is interpolated from.
+    /// Calls `take(place, weight)` for each place from which a bin is interpolated.
     fn each(&self, bin: usize, mut take: impl FnMut(usize, f64)) {
         match self.is_interpolated() {
             false => take(bin, 1.0),
@@ -184,10 +192,10 @@ impl Direction {
     }
 }
 
-/// The coefficients at offsets up to half the period with these responses: sums of cosines.
+/// Computes the coefficients at offsets up to half the period from the responses to all waves, as sums of cosines.
 pub fn coefficients(waves: &[f64], grid: &Grid) -> Result<Vec<f64>> {
     let (row, rows) = grid.offsets((true, true));
-    // Rows beyond the last that is not 0 cost nothing.
+    // Rows beyond the last one that is not 0 are not transformed.
     let last = waves.chunks_exact(row).rposition(|waves| waves.iter().any(|wave| *wave != 0.0)).unwrap_or(0);
     let product = ParityProduct::new(grid.mx, grid.my)?;
     let mut sums = zeros(row * rows, WAVES)?;
@@ -195,6 +203,6 @@ pub fn coefficients(waves: &[f64], grid: &Grid) -> Result<Vec<f64>> {
     product.of_kernel(&waves[..(last + 1) * row], row, (false, false), &mut memory, &mut sums);
     drop(memory);
     let share = 1.0 / grid.len() as f64;
-    // Sums are `[kx][ky]`.
+    // The sums are stored as `[kx][ky]`.
     Ok(computed((0..row * rows).map(|i| share * sums[i % row * rows + i / row]), WAVES)?)
 }
