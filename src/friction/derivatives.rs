@@ -74,7 +74,7 @@ impl Solver {
         let (mut slip, mut along, mut displaced) = (fields.take(n)?, fields.take(n)?, fields.take(n)?);
         for (k, i) in window.elements(&self.grid) {
             // Where the layer yields, tractions do not depend on pressures.
-            let bound = || self.scales.own_traction([problem.bound[k], 0.0])[0];
+            let bound = || self.scales.callers_traction([problem.bound[k], 0.0])[0];
             let yields = limits.get(i).is_some_and(|limit| bound() >= *limit);
             let g = match tangent.side[k] {
                 Side::Slip if !yields => friction.coefficient.at(i) * dp[i],

@@ -41,12 +41,12 @@ pub struct Sums {
 
 impl<T: Real> Discs<T> {
     /// A displacement in the unit of the problem.
-    pub fn own_displacement(&self, displacement: f64) -> f64 {
+    pub fn unscaled_displacement(&self, displacement: f64) -> f64 {
         self.units.displacement * displacement
     }
 
     /// A traction in the unit of the state.
-    pub fn own_traction(&self, traction: f64) -> f64 {
+    pub fn unscaled_traction(&self, traction: f64) -> f64 {
         self.units.traction * traction
     }
 

@@ -73,7 +73,7 @@ pub fn solve(
             return Ok(Outcome::IterationLimit);
         }
         let inner = enough(INNER, tolerance, residual);
-        let effort = Effort { inner, most: MOST_DIRECTIONS.min(left as usize), left: residual, length: 1.0 };
+        let effort = Effort { inner, most: MOST_DIRECTIONS.min(left as usize), residual, length: 1.0 };
         let part = go(problem, state, tangent, (effort, rho), fields)?;
         if !(part > 0.0) {
             problem.refresh(state);

@@ -76,14 +76,14 @@ impl Solver {
         }
         let Problem { bound, operators, .. } = &self.levels[0].problem;
         let [sum] = fields::sum(&operators.threads, bound.len(), |k| [bound[k]]);
-        self.scales.own_traction([sum * area, 0.0])[0]
+        self.scales.callers_traction([sum * area, 0.0])[0]
     }
 
     /// The gap of the [certificate](Certificate) of the result with the original bounds, after a solve with lowered ones.
     pub(super) fn gap_of_bounds(&self, request: &Request<'_>) -> f64 {
         let (friction, grid, solution) = (request.friction, &self.grid, &self.solution);
         let Level { problem, state, .. } = &self.levels[0];
-        let [scale, _] = self.scales.own_displacement([scale(problem, state), 0.0]);
+        let [scale, _] = self.scales.callers_displacement([scale(problem, state), 0.0]);
         let found = friction.has_forces();
         let terms = |i: usize| {
             let (g, s, weight) = (request.bound(i), solution.slip[i], friction.weight_at(i));

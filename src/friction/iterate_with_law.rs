@@ -93,7 +93,7 @@ impl Solver {
     /// fail.
     fn alternate(
         &mut self,
-        (request, had_slip): (&Request<'_>, bool),
+        (request, mostly_slips): (&Request<'_>, bool),
         march: &mut March,
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
@@ -102,7 +102,7 @@ impl Solver {
             (self.keep(report)?, stages::NEWTON_RESIDUAL.max(request.tolerance), true);
         loop {
             let turns = Request { tolerance: aim, ..*request };
-            let turned = self.in_turns((&turns, (false, had_slip)), (march, begins), watch, report)?;
+            let turned = self.in_turns((&turns, (false, mostly_slips)), (march, begins), watch, report)?;
             let kept = self.keep(report)?;
             let is_open = |end: Outcome, report: &Report| match end {
                 Outcome::Converged => !(report.certificate.residual < request.tolerance),
@@ -156,7 +156,7 @@ impl Solver {
         let scales = self.scales;
         let Level { problem, state, memory, .. } = &mut self.levels[0];
         let Memory { tangent, fields, .. } = memory;
-        let grid = scales.own_grid(&problem.grid);
+        let grid = scales.callers_grid(&problem.grid);
         let limit = request.limit.saturating_sub(KEPT_BACK + report.products.ceil() as u64).max(1);
         let watch = &mut |residual: f64| watch(&grid, residual);
         let goal = Goal { tolerance: request.tolerance, limit, certified: true, watch };
@@ -171,7 +171,7 @@ impl Solver {
     /// the present ones.
     fn in_turns(
         &mut self,
-        (request, (nested, had_slip)): (&Request<'_>, (bool, bool)),
+        (request, (nested, mostly_slips)): (&Request<'_>, (bool, bool)),
         (march, begins): (&mut March, bool),
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
@@ -185,7 +185,7 @@ impl Solver {
         let (outcome, residual) = loop {
             let limit = most.saturating_sub(report.products.ceil() as u64).max(1);
             let turn = Request { tolerance: turns.inner(request.tolerance), limit, ..*request };
-            let begin = (nested && turns.made == 0, had_slip || turns.made > 0);
+            let begin = (nested && turns.made == 0, mostly_slips || turns.made > 0);
             let end = self.iterate(&turn, Forces::NONE, begin, watch, report)?;
             let left = branch::renew(&mut self.levels[0], march, &mut best)?;
             let mut ended = match turns.end(left, request.tolerance) {

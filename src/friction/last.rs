@@ -11,7 +11,7 @@ use crate::memory::{copied, keep};
 pub struct Last {
     solution: Solution,
     offset: Vector,
-    is_last: bool,
+    had_friction: bool,
 }
 
 impl Drop for Last {
@@ -38,7 +38,7 @@ impl Solver {
 
     /// Notes a solve without friction: its result has no tractions. The tractions of the last step stay, for a step that continues from them.
     pub fn pass_over(&mut self) {
-        self.is_last = false;
+        self.had_friction = false;
     }
 
     /// A copy of the last result, if there is one.
@@ -48,14 +48,14 @@ impl Solver {
         let (traction, slip) = (copied(traction, what)?, copied(slip, what)?);
         let (stick_slip, particles) = (copied(stick_slip, what)?, copied(particles, what)?);
         let solution = Solution { traction, slip, stick_slip, particles };
-        Ok(Some(Last { solution, offset: self.offset, is_last: self.is_last }))
+        Ok(Some(Last { solution, offset: self.offset, had_friction: self.had_friction }))
     }
 
     /// Takes the last result of another solver on the same grid.
     pub fn take_last_of(&mut self, other: &mut Solver) {
         std::mem::swap(&mut self.solution, &mut other.solution);
         std::mem::swap(&mut self.sums, &mut other.sums);
-        (self.offset, self.has_solution, self.is_last) = (other.offset, other.has_solution, other.is_last);
+        (self.offset, self.has_solution, self.had_friction) = (other.offset, other.has_solution, other.had_friction);
     }
 
     /// Restores the copy.
@@ -63,7 +63,7 @@ impl Solver {
         self.has_solution = last.is_some();
         if let Some(mut last) = last {
             std::mem::swap(&mut self.solution, &mut last.solution);
-            (self.offset, self.is_last) = (last.offset, last.is_last);
+            (self.offset, self.had_friction) = (last.offset, last.had_friction);
         }
     }
 }

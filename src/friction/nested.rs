@@ -157,7 +157,7 @@ fn one(
         state.unload(problem.threads());
         return Ok(Outcome::Converged);
     }
-    problem.given = if forces.any() { problem.rms(|i| problem.rigid[i]) } else { 0.0 };
+    problem.rms_given_slip = if forces.any() { problem.rms(|i| problem.rigid[i]) } else { 0.0 };
     let certified = part == 1.0;
     let (mut end, mut best) = (Outcome::Stagnated, Best::none());
     let all = products_of(work.limit, certified);

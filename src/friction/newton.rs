@@ -201,7 +201,7 @@ pub fn solve(
         iterations += 1;
         let inner = enough(control.inner, tolerance, worst);
         let most = if control.factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
-        let effort = Effort { inner, most, left: measures.residual, length: control.length() };
+        let effort = Effort { inner, most, residual: measures.residual, length: control.length() };
         step(problem, state, tangent, (of_step, effort), fields)?;
         if !watch(worst) {
             return Ok(Outcome::Cancelled);

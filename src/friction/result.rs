@@ -20,7 +20,7 @@ impl Solver {
         let distance = friction.distance(&grid);
         let mut offset = [0.0; 2];
         if let (Some(window), Some(Level { problem, state, .. })) = (&self.window, self.levels.first()) {
-            offset = scales.own_displacement(problem.offset);
+            offset = scales.callers_displacement(problem.offset);
             self.offset = offset;
             // The elements in contact of a row.
             let touching = |iy: usize| window.columns(iy).filter(move |(_, ix)| pressure[iy * grid.mx + ix] > 0.0);
@@ -28,9 +28,9 @@ impl Solver {
                 traction.fill([0.0; 2]);
                 slip.fill([0.0; 2]);
                 for (k, ix) in touching(iy) {
-                    slip[ix] = scales.own_displacement(problem.slip_at(k, &state.u));
+                    slip[ix] = scales.callers_displacement(problem.slip_at(k, &state.u));
                     traction[ix] = if problem.bound[k] > 0.0 {
-                        scales.own_traction(state.q[k])
+                        scales.callers_traction(state.q[k])
                     } else {
                         against(slip[ix], request.bound(iy * grid.mx + ix))
                     };

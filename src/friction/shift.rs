@@ -125,7 +125,7 @@ fn until_it_ends<T: Real>(problem: &mut Problem, state: &mut State, discs: &mut 
 
 /// The residual of the certificate.
 fn residual<T: Real>(problem: &Problem, rigid: f64, discs: &Discs<T>, sums: Sums) -> f64 {
-    let [rest, displaced] = [sums.rest, sums.displaced].map(|sum| discs.own_displacement(problem.rms_of(sum)));
+    let [rest, displaced] = [sums.rest, sums.displaced].map(|sum| discs.unscaled_displacement(problem.rms_of(sum)));
     relative(rest, problem.compared(rigid, displaced))
 }
 
@@ -138,7 +138,7 @@ fn step<T: Real>(problem: &mut Problem, discs: &mut Discs<T>, steps: &mut Steps)
     let (length, next) = choose_length(gain / energy, energy, steps);
     let threads = problem.threads().clone();
     let mut sums = discs.go(&problem.places, &threads, length, steps.forecast);
-    problem.update = discs.own_traction(problem.rms_of(sums.moved));
+    problem.update = discs.unscaled_traction(problem.rms_of(sums.moved));
     if sums.deferred > MOST_DEFERRED * MOST_DEFERRED * sums.moved {
         discs.correct(problem);
         sums = discs.predict(&problem.places, &threads);

@@ -45,7 +45,7 @@ pub struct Solver {
     pub(super) offset: Vector,
     pub(super) has_solution: bool,
     /// Whether the last solve had friction.
-    pub(super) is_last: bool,
+    pub(super) had_friction: bool,
     /// The box of the last solve.
     pub(super) window: Option<Rectangle>,
     /// Scratch: the sums of each row of a result.
@@ -86,7 +86,7 @@ impl Solver {
             particles_before: Vec::new(),
             offset: [0.0; 2],
             has_solution: false,
-            is_last: true,
+            had_friction: true,
             window: None,
             sums: Vec::new(),
         }
@@ -99,7 +99,7 @@ impl Solver {
 
     /// The last result; none if the last solve had no friction.
     pub fn solution(&self) -> Option<&Solution> {
-        (self.has_solution && self.is_last).then_some(&self.solution)
+        (self.has_solution && self.had_friction).then_some(&self.solution)
     }
 
     /// The last result, or an empty one.
@@ -180,7 +180,7 @@ impl Solver {
         }
         self.write_particles(march);
         report.missing = self.missing(friction, &report);
-        (self.has_solution, self.is_last) = (true, true);
+        (self.has_solution, self.had_friction) = (true, true);
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
     }
@@ -204,11 +204,11 @@ impl Solver {
     ) -> Result<Outcome> {
         let from_rest = report.from_rest;
         self.set_up(window, rolling)?;
-        let mut had_slip = self.begin(request, from_rest, window)?;
+        let mut mostly_slips = self.begin(request, from_rest, window)?;
         if request.friction.has_law() {
             let nested = from_rest && !request.start.is_again();
-            let end = self.iterate_with_law(request, (window, forces, (nested, had_slip)), watch, report)?;
-            [report.update, _] = self.scales.own_traction([self.levels[0].problem.update, 0.0]);
+            let end = self.iterate_with_law(request, (window, forces, (nested, mostly_slips)), watch, report)?;
+            [report.update, _] = self.scales.callers_traction([self.levels[0].problem.update, 0.0]);
             return Ok(end);
         }
         let mut is_useful = false;
@@ -220,17 +220,17 @@ impl Solver {
             }
             is_useful = near.is_useful;
             if !is_useful {
-                had_slip = self.begin(&Request { start: Start::Before, ..*request }, from_rest, window)?;
+                mostly_slips = self.begin(&Request { start: Start::Before, ..*request }, from_rest, window)?;
             }
         }
         let nested = from_rest && !is_useful && !request.start.is_again();
         let end = match request.is_cancelled {
             true => Outcome::Cancelled,
-            false => self.iterate(request, forces, (nested, had_slip), watch, report)?,
+            false => self.iterate(request, forces, (nested, mostly_slips), watch, report)?,
         };
         let Level { problem, state, .. } = &self.levels[0];
         report.certificate = Certificate::of(problem, state);
-        [report.update, _] = self.scales.own_traction([problem.update, 0.0]);
+        [report.update, _] = self.scales.callers_traction([problem.update, 0.0]);
         Ok(end)
     }
 
@@ -239,18 +239,18 @@ impl Solver {
         &mut self,
         request: &Request<'_>,
         forces: Forces,
-        (nested, had_slip): (bool, bool),
+        (nested, mostly_slips): (bool, bool),
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {
         let scales = self.scales;
-        let watch = &mut |grid: &Grid, residual: f64| watch(&scales.own_grid(grid), residual);
+        let watch = &mut |grid: &Grid, residual: f64| watch(&scales.callers_grid(grid), residual);
         let compared = nested && request.estimates && request.friction.motion == Motion::SteadyRolling;
         let coarse = if compared { COUNTED_TOLERANCE } else { COARSE_TOLERANCE };
         let mut work = Work { products: 0.0, limit: request.limit, coarse, watch };
-        let end = nested::solve(&mut self.levels, forces, (nested, had_slip), request.tolerance, &mut work)?;
+        let end = nested::solve(&mut self.levels, forces, (nested, mostly_slips), request.tolerance, &mut work)?;
         report.products += work.products;
-        let own = |(force, creepage)| (scales.own_force(force), scales.own_creepage(creepage));
+        let own = |(force, creepage)| (scales.callers_force(force), scales.callers_creepage(creepage));
         report.coarser = self.levels.get(1).filter(|_| compared).map(|level| own(level.found()));
         Ok(end)
     }

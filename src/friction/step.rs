@@ -43,7 +43,7 @@ pub struct Effort {
     /// Most directions of the linear solve.
     pub most: usize,
     /// The relative residual before the step.
-    pub left: f64,
+    pub residual: f64,
     /// The length of the step, as a part of the full one.
     pub length: f64,
 }
@@ -176,7 +176,7 @@ pub fn step(
     let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
     let mut product = fields.take(n)?;
     let [way, inside] = way_to_the_circles(system.problem, tangent, state);
-    let all = effort.left * system.problem.rms_bound() * (system.problem.count() as f64).sqrt();
+    let all = effort.residual * system.problem.rms_bound() * (system.problem.count() as f64).sqrt();
     let is_short = compliance(system.problem) * way <= SHORT_STEP * target
         && way <= SHORT_STEP * all
         && inside <= SHORT_STEP * projected.sqrt();

@@ -79,7 +79,7 @@ impl Solver {
         }
         take_step(problem, friction, grid, (&scales, self.offset));
         let found = friction.has_forces();
-        (problem.given, problem.left, problem.update) = (0.0, 0.0, 0.0);
+        (problem.rms_given_slip, problem.rms_previous, problem.update) = (0.0, 0.0, 0.0);
         problem.bound_changed();
         threads.for_each_row_pair((&mut problem.slip, width), (&mut problem.rigid, width), |_, slip, rigid| {
             slip.copy_from_slice(rigid);
@@ -141,14 +141,14 @@ impl Solver {
         for (w, u) in problem.slip.iter_mut().zip(&state.u) {
             *w = [w[0] - u[0], w[1] - u[1]];
         }
-        problem.left = problem.rms(|i| state.u[i]);
+        problem.rms_previous = problem.rms(|i| state.u[i]);
         Ok(())
     }
 
     /// The displacement by the tractions of full slip, on the elements of the last solve.
     pub fn full_displacement(&self) -> f64 {
         let displaced = self.levels.first().map_or(0.0, |level| level.problem.displaced_by_bounds());
-        self.scales.own_displacement([displaced, 0.0])[0]
+        self.scales.callers_displacement([displaced, 0.0])[0]
     }
 
     /// Creepages that are to be found begin at 0 if those of the start are out of range: these need not be the caller's.
@@ -179,7 +179,7 @@ impl Solver {
             let motion = if slip > displaced { "a smaller motion" } else { "a larger motion or none" };
             let rule = format!("choose {motion}, coefficients of friction or shear moduli of another order");
             // A length that overflows in the scene's units has no number.
-            let own = self.scales.own_displacement([slip, displaced]);
+            let own = self.scales.callers_displacement([slip, displaced]);
             let [slip, displaced] =
                 own.map(|length| if length.is_finite() { format!("{length:e}") } else { "1e308 or more".into() });
             return invalid(format!(

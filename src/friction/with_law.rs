@@ -70,7 +70,8 @@ impl Solver {
 
     /// The law in the units of the iterations.
     pub(super) fn law(&self, friction: &Friction<'_>) -> Law {
-        let ([displacement, _], duration) = (self.scales.own_displacement([1.0, 0.0]), friction.duration(&self.grid));
+        let ([displacement, _], duration) =
+            (self.scales.callers_displacement([1.0, 0.0]), friction.duration(&self.grid));
         let layer = friction.layer.map(|layer| PlasticLayer {
             yield_limit: self.scales.traction(layer.yield_limit),
             hardening: self.scales.traction(layer.hardening * displacement),
@@ -140,7 +141,7 @@ impl Solver {
             }
             let Particle { coefficient, yield_limit } = response.particle;
             // A step without a layer leaves no limits.
-            let yield_limit = if law.layer.is_some() { scales.own_traction([yield_limit, 0.0])[0] } else { 0.0 };
+            let yield_limit = if law.layer.is_some() { scales.callers_traction([yield_limit, 0.0])[0] } else { 0.0 };
             particles[i] = Particle { coefficient, yield_limit };
             response.particle
         });

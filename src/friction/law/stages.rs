@@ -132,7 +132,7 @@ fn iterate(
             resolve(problem, state, tangent, march, rho);
             system::step(problem, state, (tangent, march, forces), (rho, inner, most), fields)?;
         } else {
-            let effort = Effort { inner, most, left: measures.residual, length: 1.0 };
+            let effort = Effort { inner, most, residual: measures.residual, length: 1.0 };
             step::step(problem, state, tangent, (forces, effort), fields)?;
         }
         if !watch(worst) {
