@@ -1,4 +1,4 @@
-//! The [extension](Extension) of residuals beyond C: the preconditioner multiplies smooth fields, which residuals are not at the edge of C.
+//! The [extension](Extension) of residuals beyond C, which improves the preconditioner, on grids where it saves time.
 
 use crate::error::Result;
 use crate::grid::Grid;

@@ -13,7 +13,7 @@
 //! | `excess` | a layer between the bodies whose compliance differs between elements |
 //! | `pairs`, `beside` | SIMD passes over fields of two components; the extension of residuals beyond C |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for given motions; their fields |
-//! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton: steady rolling, given forces, and if the gradients stall |
+//! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton: steady rolling, given forces, other stalls |
 //! | `downhill` | the projected Newton method: for given motions, if the other methods cycle |
 //! | `glued` | bounds far above the tractions, which are lowered before the solve |
 //! | `balance`, `corral`, `bracket` | the search for the creepages that belong to given forces |
@@ -21,7 +21,7 @@
 //! | [`cross`] | unlike bodies: the coupling of the normal and the tangential problem |
 //! | [`law`], `with_law`, `iterate_with_law` | bounds that depend on the slip, and the state of the interface's particles |
 //! | `levels`, `interpolation`, `nested` | coarser grids and nested iteration |
-//! | `request`, `unit`, `scales`, `take_over`, `solver`, `result`, `last` | the whole solve: request, units, start, result; a copy of the last result |
+//! | `request`, `unit`, `scales`, `take_over`, `solver`, `result`, `last` | the whole solve: request, units, start, result and its copy |
 
 mod balance;
 mod beside;
