@@ -72,7 +72,7 @@ impl Solver {
         let particle = |k: usize| self.scaled(had.at(element(k)));
         let by = friction.elements_rolled(&self.grid);
         let mut march = March::new((problem.grid, law), friction.motion, by, place, particle)?;
-        slope::measure(&mut march, |k| problem.operators.own_influence(k))?;
+        slope::measure(&mut march, |k| problem.operators.influence_on_itself(k))?;
         report.law_slope = march.falls;
         if request.is_cancelled {
             return Ok(Outcome::Cancelled);

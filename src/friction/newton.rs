@@ -132,19 +132,19 @@ struct Certificates {
 impl Certificates {
     /// Compares the residual after a certificate with the prediction before it.
     fn compare(&mut self, residual: f64) {
-        if let Some(before) = self.before.take().filter(|_| self.is_by_step()) {
+        if let Some(before) = self.before.take().filter(|_| self.uses_preconditioner()) {
             self.worse = if residual > WORSE_CERTIFICATE * before { self.worse + 1 } else { 0 };
         }
     }
 
     /// Whether `polish` uses the preconditioner.
-    fn is_by_step(&self) -> bool {
+    fn uses_preconditioner(&self) -> bool {
         self.worse < TIMES_WORSE
     }
 
     /// Whether to take a certificate.
     fn is_near(&self, measures: Measures, missing: f64, tolerance: f64) -> bool {
-        let part = if self.is_by_step() { POLISH_BELOW } else { 1.0 };
+        let part = if self.uses_preconditioner() { POLISH_BELOW } else { 1.0 };
         measures.residual < part * tolerance && measures.excess.max(missing) < tolerance
     }
 }
@@ -187,7 +187,7 @@ pub fn solve(
         certificates.compare(measures.residual);
         if certified && !state.is_exact && certificates.is_near(measures, missing, tolerance.max(ROUND_OFF)) {
             certificates.before = Some(measures.residual);
-            polish(problem, state, (tangent, certificates.is_by_step()), of_step, fields)?;
+            polish(problem, state, (tangent, certificates.uses_preconditioner()), of_step, fields)?;
             continue;
         }
         let runs_away = manner == Manner::Plain && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning);
