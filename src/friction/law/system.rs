@@ -44,7 +44,7 @@ impl RadialSystem<'_> {
             self.apply((&nothing, e), &nothing, &mut column);
             self.precondition(&column, &mut y);
             [nothing, column].into_iter().for_each(|field| fields.give(field));
-            self.border.take(k, y, self.problem);
+            self.border.set_column(k, y, self.problem);
         }
         Ok(())
     }
