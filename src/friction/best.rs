@@ -1,4 +1,4 @@
-//! The best tractions of an iteration, returned if it does not converge.
+//! The best tractions of an iteration, which are the result if it does not converge.
 
 use super::certificate::Certificate;
 use super::forces::Forces;
@@ -7,25 +7,26 @@ use super::problem::{Problem, State};
 use crate::error::Result;
 use crate::methods::fields::{self, Fields};
 
-/// Relative uncertainty of a residual from displacements that are not fresh: round-off of single precision.
+/// A residual from displacements that are not fresh is uncertain by this: the round-off of single precision.
 const STALE_UNCERTAINTY: f64 = f32::EPSILON as f64;
 
-/// Tractions, their creepages, and their largest measure.
+/// The tractions and creepages with the least error so far.
 pub struct Best {
+    /// Empty if there are none yet.
     q: Vec<Vector>,
     offset: Vector,
-    /// The largest of the residual, the excess over the bounds and the missing force.
+    /// Their error: the largest of the residual, the excess of |q| over its bounds and the missing force, each relative to its scale.
     worst: f64,
 }
 
 impl Best {
-    /// No tractions yet.
+    /// A place for tractions, without any yet.
     pub fn none() -> Best {
         Best { q: Vec::new(), offset: [0.0; 2], worst: f64::INFINITY }
     }
 
-    /// Keeps the state's tractions if they are better. Their measure counts as [`STALE_UNCERTAINTY`] or more if the
-    /// displacements are not fresh.
+    /// Copies the state's tractions if their error `worst` is the least so far. If their displacements are not fresh, the error counts as
+    /// [`STALE_UNCERTAINTY`] at least.
     pub fn see(&mut self, problem: &Problem, state: &State, worst: f64, fields: &mut Fields) -> Result<()> {
         let worst = if state.is_exact { worst } else { worst.max(STALE_UNCERTAINTY) };
         if !(worst < self.worst) {
@@ -39,8 +40,8 @@ impl Best {
         Ok(())
     }
 
-    /// After an iteration without convergence: makes the last tractions feasible, with a fresh product, and replaces them by the best if those are
-    /// better.
+    /// After an iteration that did not converge: projects the last tractions and the best ones onto the discs, computes their errors by fresh
+    /// products, and sets the state to the better ones.
     pub fn restore(&mut self, problem: &mut Problem, state: &mut State, forces: Forces) {
         let last = measured(problem, state, forces);
         if self.q.len() != state.q.len() {
@@ -53,7 +54,7 @@ impl Best {
         }
     }
 
-    /// Restores the best tractions without their displacements. Returns whether there are any.
+    /// Sets the tractions and creepages to the best ones. The displacements then have to be computed. Returns false if there are no best tractions.
     pub fn take_up(&self, problem: &mut Problem, state: &mut State) -> bool {
         if self.q.len() != state.q.len() {
             return false;
@@ -68,7 +69,7 @@ impl Best {
         std::mem::swap(&mut self.offset, &mut problem.offset);
     }
 
-    /// Returns the field.
+    /// Gives the memory back to `fields`.
     pub fn give(self, fields: &mut Fields) {
         if !self.q.is_empty() {
             fields.give(self.q);
@@ -76,7 +77,7 @@ impl Best {
     }
 }
 
-/// The largest measure of feasible tractions.
+/// Projects q onto the discs, and returns its error: the larger of the residual and the missing force, by a fresh product.
 fn measured(problem: &mut Problem, state: &mut State, forces: Forces) -> f64 {
     problem.refresh(state);
     let missing = forces.missing(problem, &state.q);

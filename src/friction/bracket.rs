@@ -1,8 +1,11 @@
-//! Given forces for which Newton's method stalls: solves with given creepages, between creepages known to carry too much and too little.
+//! Given forces for which Newton's method stalls: a search for their creepages, by solves with given creepages. Such a solve is called a trial.
 //!
-//! Such a solve has one solution, and its forces cut off a part of the [`Corral`]. The next creepages are those at which the natural map
-//! carries the forces ([`balanced`]), best if nearly all of C slips, or those of the linear system, best if much sticks. If neither halves
-//! the missing force, the centre of the corral follows. So the method ends.
+//! A trial has one solution. Its forces cut off a part of the [`Corral`], the region of creepages that may carry the given forces. The creepages of
+//! the next trial are
+//!
+//! * those at which the natural map carries the forces ([`balanced`]), which is good if nearly all of C slips,
+//! * or those of a Newton step on the forces at fixed slip area, which is good if much of C sticks,
+//! * or the centre of the corral, if neither of them halves the missing force. Therefore the search ends.
 
 use super::balance::balanced;
 use super::best::Best;
@@ -20,30 +23,32 @@ use crate::error::Result;
 use crate::methods::fields;
 use crate::progress::Outcome;
 
-/// Newton's method with balanced creepages is tried each time the missing force falls to CLOSE_RATIO times that of the last try.
+/// Newton's method for given forces is tried again each time the missing force falls below this times that of the last try.
 const CLOSE_RATIO: f64 = 0.1;
-/// Products of a try of tractions by force, when the forces are nearly met.
+/// The most products of such a try.
 pub const FINISHING_PRODUCTS: u64 = 30;
-/// Factor on the residual of solves if other creepages leave the forces unchanged, and its least value.
+/// If two trials with different creepages have the same forces, the tolerance of trials is multiplied by this factor.
 const TIGHTER: f64 = 0.03;
+/// The least tolerance of trials.
 const LEAST_INNER: f64 = 1e-14;
-/// Relative accuracy of the derivatives of forces.
+/// The relative residual of the linear solves for the derivatives of the forces by the creepages.
 const DERIVATIVE_ACCURACY: f64 = 1e-2;
-/// Most trials.
+/// The largest number of trials.
 const MOST_TRIALS: u32 = 400;
 
-/// The choice of trials.
+/// How the creepages of the next trial are chosen.
 struct Trials {
     corral: Corral,
+    /// Whether the natural map gives the next creepages; otherwise the Newton step on the forces does.
     by_map: bool,
-    /// Trials in a row that were not good.
+    /// The number of last trials in a row that did not halve the missing force.
     bad: u32,
-    /// The least missing force of all trials. A trial is not compared with the last one: of two trials that lead to each other, every second one
-    /// would count as good for ever.
+    /// The least missing force of all trials. Trials are compared with this and not with the last one. Otherwise, of two trials that lead to each
+    /// other, every second one would count as good for ever.
     least: Option<f64>,
 }
 
-/// Solves from the state and the offset.
+/// Searches from the given tractions, and from the creepages in the problem's offset.
 pub fn solve(
     problem: &mut Problem,
     state: &mut State,
@@ -85,7 +90,7 @@ pub fn solve(
                 return Ok(end);
             }
         }
-        // The forces are those of the trial before: their change is below the residual of the solve.
+        // The forces equal those of the trial before: their change is below the tolerance of the trials.
         if excess == before && inner > LEAST_INNER {
             inner *= TIGHTER;
             continue;
@@ -97,15 +102,15 @@ pub fn solve(
         } else if is_exact {
             break;
         } else {
-            // The forces have an error by the residual, which may exceed the missing force, as on one element alone. Then a cut removes the wanted
-            // creepages.
+            // The residual causes an error of the forces, which may exceed the missing force, as on one element alone. Then a cut may have removed
+            // the wanted creepages, and the search starts again with the least tolerance.
             (is_exact, inner, trials) = (true, inner.min(LEAST_INNER), Trials::new(problem, forces, bounds));
         }
     }
     Ok(Outcome::Stagnated)
 }
 
-/// Newton's method with balanced creepages from here; restores the state if it does not converge.
+/// Tries Newton's method for the given forces, from the present state. If it does not converge, restores this state.
 fn finish(
     problem: &mut Problem,
     state: &mut State,
@@ -114,18 +119,18 @@ fn finish(
     goal: Goal<'_>,
 ) -> Result<Outcome> {
     let Memory { tangent, fields, .. } = memory;
-    let (mut here, mut best) = (Best::none(), Best::none());
-    here.see(problem, state, 0.0, fields)?;
+    let (mut present, mut best) = (Best::none(), Best::none());
+    present.see(problem, state, 0.0, fields)?;
     let end = newton::solve(problem, state, (tangent, fields, &mut best), (forces, Manner::Balanced), goal)?;
-    if end != Outcome::Converged && here.take_up(problem, state) {
+    if end != Outcome::Converged && present.take_up(problem, state) {
         problem.refresh(state);
     }
-    here.give(fields);
+    present.give(fields);
     best.give(fields);
     Ok(end)
 }
 
-/// Solves with the creepages of the offset.
+/// Makes a trial: solves with the creepages in the problem's offset as given ones.
 fn by_creepages(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal: Goal<'_>) -> Result<Outcome> {
     let Goal { tolerance, limit, certified, watch } = goal;
     if problem.rms_slip() == 0.0 {
@@ -159,8 +164,9 @@ fn by_creepages(problem: &mut Problem, state: &mut State, memory: &mut Memory, g
 }
 
 impl Trials {
+    /// The corral is a square that contains the wanted creepages for sure. `bounds` is the sum of g.
     fn new(problem: &Problem, forces: Forces, bounds: f64) -> Trials {
-        // A bound on the displacement by all tractions, of both components, here and a step ahead.
+        // An upper bound on the change of displacement in a step, by all tractions at their bounds.
         let displaced = 8.0 * problem.operators.greatest() * bounds;
         let rigid = fields::largest(problem.threads(), problem.bound.len(), |i| {
             let inside = problem.bound[i] > 0.0;
@@ -175,7 +181,7 @@ impl Trials {
         Trials { corral: Corral::new(half, forces.given), by_map: true, bad: 0, least: None }
     }
 
-    /// The creepages to try next; the present ones if there are no others.
+    /// Cuts the corral by the last trial, and returns the creepages of the next one. They equal the last ones if the corral is too small for others.
     fn next(
         &mut self,
         problem: &mut Problem,
@@ -212,7 +218,8 @@ impl Trials {
     }
 }
 
-/// The change of creepages per excess of force: the inverse of minus the derivatives of the forces at fixed slip area.
+/// The change of creepages per excess of force of a Newton step: the inverse of minus the derivatives of the forces by the creepages, at fixed slip
+/// area.
 fn slope(problem: &mut Problem, memory: &mut Memory, forces: Forces) -> Result<[Vector; 2]> {
     let Memory { tangent, fields, .. } = memory;
     let mut falls = [[0.0; 2]; 2];

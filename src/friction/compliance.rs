@@ -1,20 +1,21 @@
-//! The elastic constants of both bodies together.
+//! The combined elastic constants of two bodies, as in Kalker's theory of rolling contact.
 
 use crate::scene::Bodies;
 
-/// The factors of the displacements that depend on the materials: `1/G`, `nu/G` and `K/G` of both bodies together.
+/// The factors by which the materials enter the displacements of two half-spaces: `1/G`, `nu/G` and `K/G`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compliance {
     /// `1/G = (1/G1 + 1/G2)/2`.
     pub shear: f64,
     /// `nu/G = (nu1/G1 + nu2/G2)/2`.
     pub poisson: f64,
-    /// `K/G = ((1 - 2 nu1)/G1 - (1 - 2 nu2)/G2)/4`: 0 for like bodies, whose normal and tangential problems are independent.
+    /// `K/G = ((1 - 2 nu1)/G1 - (1 - 2 nu2)/G2)/4`, where K is the difference parameter. If K is 0, the bodies are alike, and their normal and
+    /// tangential problems are independent.
     pub unlike: f64,
 }
 
 impl Compliance {
-    /// The compliance of two bodies together.
+    /// Combines the elastic constants of two bodies.
     pub fn of(bodies: &Bodies) -> Compliance {
         let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = *bodies;
         Compliance {

@@ -1,49 +1,52 @@
-//! A convex polygon that contains the creepages of given forces. Each computed force cuts off a part.
+//! The corral, a convex polygon in the plane of creepages that contains the wanted creepages c* of given forces F*. Each force F(c) that is computed
+//! for other creepages c cuts off a part of the polygon.
 //!
-//! Forces F fall as creepages c grow, `(F(c) - F(c*)).(c - c*) <= 0`: from the force at c follows `(F(c) - F*).(c* - c) >= 0` for the wanted
-//! force F* at c*. Cuts through the centroid leave at most 5/9 of the area (Gruenbaum 1960), so the search ends.
+//! Forces fall as creepages grow, `(F(c) - F(c')).(c - c') <= 0`. So the wanted creepages lie in the half-plane `(F(c) - F*).(c* - c) >= 0`. A cut
+//! through the centroid leaves at most 5/9 of the area (Gruenbaum 1960), so that the search ends.
 
 use super::plane::{dot, plus, Vector};
 
-/// A trial is good if its missing force is at most this part of the last or least one. One half is about what the centre of the corral achieves,
-/// which follows trials that are not good.
+/// Other creepages than the centre of the corral are good if their missing force is at most this part of an earlier one. One half is about what the
+/// centre achieves.
 pub const PROGRESS: f64 = 0.5;
 
-/// The polygon; with one unknown creepage a rectangle, whose cuts are parallel.
+/// The polygon. With one unknown creepage it is a rectangle, which is cut at right angles to that creepage.
 pub struct Corral {
+    /// The corners, counterclockwise.
     corners: Vec<Vector>,
+    /// Whether the force in x is given, and that in y: then that creepage is unknown.
     given: [bool; 2],
 }
 
 impl Corral {
-    /// Creepages up to `half` in each direction with a given force.
+    /// The square of creepages from `-half` to `half`.
     pub fn new(half: f64, given: [bool; 2]) -> Corral {
         let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
         Corral { corners: corners.to_vec(), given }
     }
 
-    /// Cuts off the part that the `excess` of the forces at `at` excludes.
-    pub fn cut(&mut self, at: Vector, excess: Vector) {
-        let beyond = |c: Vector| dot(excess, plus(c, -1.0, at));
+    /// Cuts the polygon along the line through `trial`, the creepages of a trial whose forces exceed the given ones by `excess`.
+    pub fn cut(&mut self, trial: Vector, excess: Vector) {
+        let side = |c: Vector| dot(excess, plus(c, -1.0, trial));
         let mut kept = Vec::with_capacity(self.corners.len() + 1);
         for (k, &from) in self.corners.iter().enumerate() {
             let to = self.corners[(k + 1) % self.corners.len()];
-            let (here, there) = (beyond(from), beyond(to));
-            if here >= 0.0 {
+            let (side_from, side_to) = (side(from), side(to));
+            if side_from >= 0.0 {
                 kept.push(from);
             }
-            if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
-                let part = here / (here - there);
+            if (side_from > 0.0 && side_to < 0.0) || (side_from < 0.0 && side_to > 0.0) {
+                let part = side_from / (side_from - side_to);
                 kept.push([0, 1].map(|k| from[k] + part * (to[k] - from[k])));
             }
         }
-        // If round-off leaves nothing, the polygon is as small as double precision resolves.
+        // If no corner is left, by round-off, the polygon is as small as double precision resolves, and stays.
         if !kept.is_empty() {
             self.corners = kept;
         }
     }
 
-    /// The centroid.
+    /// The centroid; the mean of the corners if the area is 0 by round-off.
     pub fn centre(&self) -> Vector {
         let first = self.corners[0];
         let (mut area, mut moment) = (0.0, [0.0; 2]);
@@ -62,7 +65,7 @@ impl Corral {
         self.only_given(if is_inside { centre } else { mean() })
     }
 
-    /// Whether a place lies inside: all edges turn the same way around it.
+    /// Whether the polygon contains c: c lies to the left of all edges, or on them.
     pub fn holds(&self, c: Vector) -> bool {
         let sides = self.corners.iter().enumerate().map(|(k, from)| {
             let to = self.corners[(k + 1) % self.corners.len()];

@@ -1,7 +1,7 @@
-//! Derivatives of the last result by pressures and slip, on the whole grid.
+//! Derivatives of the last result by the pressures and the rigid slip, on the whole grid.
 //!
-//! The slip area stays constant. Its tractions follow the pressures, `dq = mu dp n + z` with `P z = z` (see [`sensitivity`]). With dw, the change
-//! of the slip from other causes, which include lateral displacements by pressures,
+//! The slip area is kept constant. Its tractions stay on the circles, whose radii change with the pressures: `dq = mu dp n + z` with `P z = z` (see
+//! [`sensitivity`]). With dw, the change of w (which includes the change of the tangential displacements by pressures),
 //!
 //! ```text
 //! (P A P + D) z = -P (dw + A mu dp n)
@@ -18,7 +18,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 
 impl Solver {
-    /// The [`Report::sensitivities`](super::Report::sensitivities) with fixed pressures. None if `watch` cancels.
+    /// Computes the [`Report::sensitivities`](super::Report::sensitivities) with fixed pressures. None if `watch` cancels.
     pub(super) fn sensitivities(
         &mut self,
         friction: &Friction<'_>,
@@ -60,8 +60,8 @@ impl Solver {
         Ok(Some(derivatives).filter(|_| !is_cancelled))
     }
 
-    /// The change dq of the last tractions by a change `dp` of the pressures and a change dw of the slip from other causes. `change` holds dw on
-    /// entry and dq on return. All arrays are on the whole grid.
+    /// Computes the change dq of the last tractions by a change `dp` of the pressures and a change dw of w. `change` holds dw on entry and dq on
+    /// return. All arrays are on the whole grid.
     pub fn change(&mut self, friction: &Friction<'_>, dp: &[f64], change: &mut [Vector]) -> Result<()> {
         let limits = self.limits(friction, &self.particles_before)?;
         let (Some(window), Some(level)) = (&self.window, self.levels.first_mut()) else {
@@ -71,33 +71,34 @@ impl Solver {
         let (problem, Memory { tangent, fields, .. }) = (&mut level.problem, &mut level.memory);
         sensitivity::predict(problem, &level.state, tangent)?;
         let n = level.state.q.len();
-        let (mut slip, mut along, mut displaced) = (fields.take(n)?, fields.take(n)?, fields.take(n)?);
+        // `slip` holds dw, then z; `by_bound` is mu dp n.
+        let (mut slip, mut by_bound, mut displaced) = (fields.take(n)?, fields.take(n)?, fields.take(n)?);
         for (k, i) in window.elements(&self.grid) {
-            // Where the layer yields, tractions do not depend on pressures.
-            let bound = || self.scales.own_traction([problem.bound[k], 0.0])[0];
+            // Where an ideal layer yields, the bound does not depend on the pressure.
+            let bound = || self.scales.callers_traction([problem.bound[k], 0.0])[0];
             let yields = limits.get(i).is_some_and(|limit| bound() >= *limit);
-            let g = match tangent.side[k] {
+            let dg = match tangent.side[k] {
                 Side::Slip if !yields => friction.coefficient.at(i) * dp[i],
                 _ => 0.0,
             };
-            (slip[k], along[k]) =
-                (self.scales.change(change[i]), tangent.normal[k].map(|n| if g == 0.0 { 0.0 } else { g * n }));
+            (slip[k], by_bound[k]) =
+                (self.scales.change(change[i]), tangent.normal[k].map(|n| if dg == 0.0 { 0.0 } else { dg * n }));
         }
-        let largest = along.iter().flatten().fold(0.0, |most: f64, value| most.max(value.abs()));
+        let largest = by_bound.iter().flatten().fold(0.0, |most: f64, value| most.max(value.abs()));
         if largest > 0.0 {
-            problem.operators.multiply(&along, largest, &mut displaced);
+            problem.operators.multiply(&by_bound, largest, &mut displaced);
             slip.iter_mut().zip(&displaced).for_each(|(w, u)| *w = [w[0] + u[0], w[1] + u[1]]);
         }
         sensitivity::solve(problem, tangent, (fields, &mut slip), sensitivity::TOLERANCE, &mut |_| true)?;
         change.fill([0.0; 2]);
         for (k, i) in window.elements(&self.grid) {
-            change[i] = [slip[k][0] + along[k][0], slip[k][1] + along[k][1]];
+            change[i] = [slip[k][0] + by_bound[k][0], slip[k][1] + by_bound[k][1]];
         }
-        [slip, along, displaced].into_iter().for_each(|field| fields.give(field));
+        [slip, by_bound, displaced].into_iter().for_each(|field| fields.give(field));
         Ok(())
     }
 
-    /// Products on the finest grid since the last call.
+    /// Returns the number of products on the finest grid since the last call of this function.
     pub fn take_products(&mut self) -> f64 {
         self.levels.first_mut().map_or(0, |level| level.problem.take_products()) as f64
     }

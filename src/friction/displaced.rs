@@ -1,4 +1,5 @@
-//! Displacements at points between the centres of the elements of a window.
+//! Displacements at points between the centres of the elements of a box: transient rolling needs those at the places where particles were before the
+//! step.
 
 use super::plane::Vector;
 use super::row_product::RowProduct;
@@ -10,11 +11,12 @@ use crate::grid::Grid;
 use crate::threads::Threads;
 use toeplitz::Memory;
 
-/// `A q` at points between the centres.
+/// The product that returns the displacements by q at one point per element, each at the same offset from the element's centre.
 pub struct Displaced {
+    /// The offset of the points from the centres, in elements.
     by: (f64, f64),
     grid: Grid,
-    /// The first row, for tables per loaded row.
+    /// The first row of the grid in tables per loaded row; none without such tables.
     first: Option<usize>,
     product: Product,
 }
@@ -25,7 +27,7 @@ enum Product {
 }
 
 impl Displaced {
-    /// The displacements.
+    /// Computes the displacements u at the points, by tractions q.
     pub fn apply(&mut self, q: &[Vector], u: &mut [Vector]) {
         match &mut self.product {
             Product::Toeplitz(operator, workspace) => operator.apply(q, 1.0, u, workspace),
@@ -44,8 +46,8 @@ impl Displaced {
     }
 }
 
-/// The product at points that are offset by `by` elements from the centres. It is kept. Other points, another grid or another first row need a new
-/// set-up.
+/// Returns the product for points at the offset `by` from the centres, in elements. `kept` holds the last such product. It is set up anew for another
+/// offset, another grid or another first row.
 pub fn displaced<'a>(
     kept: &'a mut Option<Displaced>,
     tangential: &Tangential,

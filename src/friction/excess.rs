@@ -1,9 +1,9 @@
-//! A layer between the bodies whose compliance differs between elements. The coefficients contain its least compliance; the displacements by the
-//! rest, r, are added here.
+//! A layer between the bodies whose compliance differs between elements. The influence coefficients contain its least compliance. Each element has an
+//! excess r, which is its compliance less the least one, and this file adds the displacements by it:
 //!
 //! ```text
-//! u_I += r_I q_I                             r: the compliance less the least
-//! u_I += d (r q)_I                           in steady rolling; d v = v - v(x + dq), interpolated between the centres
+//! u_I += r_I q_I
+//! u_I += (d (r q))_I           in steady rolling; (d v)(x) = v(x) - v(x + dq), interpolated between the centres
 //! ```
 
 use super::plane::Vector;
@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
 
-/// r on the elements of a grid.
+/// The excess r of the elements of a grid.
 pub struct Excess {
     mx: usize,
     my: usize,
@@ -20,7 +20,7 @@ pub struct Excess {
 }
 
 impl Excess {
-    /// The excess `of(i)` of each element of a grid.
+    /// Stores the excess `of(i)` of each element i of a grid.
     pub fn new(grid: &Grid, of: impl Fn(usize) -> f64) -> Result<Excess> {
         let mut values: Vec<f64> = zeros(grid.len(), "the layer between the bodies")?;
         values.iter_mut().enumerate().for_each(|(i, value)| *value = of(i));
@@ -32,7 +32,7 @@ impl Excess {
         self.values[i]
     }
 
-    /// Calls `add(i, displacement by q)` for each element; with a sweep, in a step of steady rolling.
+    /// Calls `add(i, displacement)` for each element, with the displacement by tractions q, or with a sweep that of a step of steady rolling.
     pub fn add(&self, q: impl Fn(usize) -> Vector, sweep: Option<&Sweep>, mut add: impl FnMut(usize, Vector)) {
         for i in 0..self.values.len() {
             let here = self.displaced(&q, i);
@@ -41,7 +41,8 @@ impl Excess {
         }
     }
 
-    /// For a step of transient rolling: subtracts from w the displacements by the previous tractions q, at the old place of each particle.
+    /// For a step of transient rolling: subtracts the displacements by the previous tractions q from w, each at the place where the particle of an
+    /// element was before the step.
     pub fn subtract_ahead(&self, q: &[Vector], sweep: &Sweep, w: &mut [Vector]) {
         for (i, w) in w.iter_mut().enumerate() {
             let there = self.ahead(&|i| q[i], sweep, i);
@@ -49,11 +50,12 @@ impl Excess {
         }
     }
 
+    /// `r q` of element i.
     fn displaced(&self, q: &impl Fn(usize) -> Vector, i: usize) -> Vector {
         q(i).map(|q| self.values[i] * q)
     }
 
-    /// `r q` at the place of element i after a step.
+    /// `r q` at the point one step ahead of the centre of element i.
     fn ahead(&self, q: &impl Fn(usize) -> Vector, sweep: &Sweep, i: usize) -> Vector {
         let mut sum = self.displaced(q, i).map(|v| sweep.own() * v);
         for &(in_x, in_y, weight) in sweep.neighbours() {

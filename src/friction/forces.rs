@@ -1,4 +1,4 @@
-//! Given tangential forces.
+//! Given tangential forces: the largest forces that friction carries, and the missing part of forces.
 
 use super::certificate::is_on_circle;
 use super::plane::{add, length, plus, Vector};
@@ -12,24 +12,27 @@ use crate::memory::sparse;
 use crate::methods::fields;
 use crate::sums::{in_blocks, ROUND_OFF};
 
-/// Given forces.
+/// The given forces of a scene, as sums of tractions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forces {
-    /// Whether the force in x, in y is given.
+    /// Whether the force in x is given, and that in y.
     pub given: [bool; 2],
-    /// `F/(dx dy)` in each direction.
+    /// The sum of the (weighted) tractions in each direction, `F/(dx dy)`; 0 in a direction with a given creepage.
     pub sum: Vector,
 }
 
-/// A force, as a sum of tractions, and the greatest that tractions carry.
+/// A given force and the greatest one that tractions within the bounds carry, both as sums of tractions.
 struct Reach {
+    /// The direction of the force, as a part of the message.
     direction: &'static str,
+    /// What limits the force, as a part of the message.
     by: &'static str,
     wanted: f64,
     greatest: f64,
 }
 
 impl Reach {
+    /// The message that refuses the force. `area` is that of an element.
     fn refusal(&self, area: f64) -> String {
         let Reach { direction, by, wanted, greatest } = self;
         format!(
@@ -49,8 +52,8 @@ impl Forces {
         self.only_given(self.sum) == [0.0; 2]
     }
 
-    /// The forces of a scene whose elements carry at most `bound(i)` each. Rejects forces that no tractions within these bounds carry. If the bounds
-    /// are all 0, a force of 0 is met, and its creepage stays 0.
+    /// The given forces of a scene whose elements carry tractions of at most `bound(i)`. Refuses forces that no such tractions carry. If all bounds
+    /// are 0, a given force of 0 counts as not given: its creepage is 0.
     pub fn of(friction: &Friction<'_>, grid: &Grid, bound: impl Fn(usize) -> f64) -> Result<Forces> {
         let mut refused = None;
         let forces = Forces::within(friction, grid, bound, |reach| {
@@ -61,15 +64,15 @@ impl Forces {
         refused.map_or(Ok(forces), |message| Err(Error::Infeasible(message)))
     }
 
-    /// The largest common factor on all forces that tractions within these bounds carry. Above 1 they could carry larger forces.
+    /// The largest factor by which all given forces can be multiplied so that tractions within the bounds still carry them.
     pub fn part(friction: &Friction<'_>, grid: &Grid, bound: impl Fn(usize) -> f64) -> Result<f64> {
         let mut part = f64::INFINITY;
         Forces::within(friction, grid, bound, |reach| part = part.min(reach.greatest / reach.wanted))?;
         Ok(part)
     }
 
-    /// The forces of [`Forces::of`]. Calls `compare` with each given force and the greatest force that the bounds carry: with weights for each
-    /// direction, then for both directions together.
+    /// As [`Forces::of`], but refuses nothing. Calls `compare` with the given forces and the greatest ones that the bounds carry: first for each
+    /// direction alone if there are weights, then for both directions together.
     fn within(
         friction: &Friction<'_>,
         grid: &Grid,
@@ -99,17 +102,20 @@ impl Forces {
             }
         }
         let wanted = forces.sum[0].hypot(forces.sum[1]);
-        let along = match forces.given {
+        let direction = match forces.given {
             [false, false] => return Ok(Forces::NONE),
             _ if wanted > 0.0 => forces.sum.map(|sum| sum / wanted),
             [true, _] => [1.0, 0.0],
             _ => [0.0, 1.0],
         };
         let greatest = match friction.weights {
-            Some(weights) if forces.given == [true; 2] && wanted > 0.0 => reach(weights, along, grid.len(), &bound)?,
+            Some(weights) if forces.given == [true; 2] && wanted > 0.0 => {
+                reach(weights, direction, grid.len(), &bound)?
+            }
             _ => {
-                let share = |i: usize| friction.weights.map_or(1.0, |[x, y]| (x[i] * along[0]).hypot(y[i] * along[1]));
-                in_blocks((0..grid.len()).map(|i| share(i) * bound(i)))
+                let weight =
+                    |i: usize| friction.weights.map_or(1.0, |[x, y]| (x[i] * direction[0]).hypot(y[i] * direction[1]));
+                in_blocks((0..grid.len()).map(|i| weight(i) * bound(i)))
             }
         };
         if greatest == 0.0 && forces.sum == [0.0; 2] {
@@ -120,7 +126,7 @@ impl Forces {
         Ok(forces)
     }
 
-    /// The forces in other units of tractions.
+    /// Converts the sums of tractions to the units of the iterations.
     pub fn in_units_of(&self, scales: &Scales) -> Forces {
         Forces { sum: self.sum.map(|sum| scales.traction(sum)), ..*self }
     }
@@ -135,12 +141,13 @@ impl Forces {
         Forces { sum: [part * self.sum[0], part * self.sum[1]], ..*self }
     }
 
-    /// The components of v in the directions of given forces. Other components are 0.
+    /// v with the component of each direction without a given force set to 0.
     pub fn only_given(&self, v: Vector) -> Vector {
         [if self.given[0] { v[0] } else { 0.0 }, if self.given[1] { v[1] } else { 0.0 }]
     }
 
-    /// The given forces less a sum of tractions, which is only taken if a force is given.
+    /// The given forces less the sum of tractions that `sum` computes; 0 in directions without a given force. `sum` is called only if a force is
+    /// given.
     pub fn less(&self, sum: impl FnOnce() -> Vector) -> Vector {
         if self.any() {
             self.only_given(plus(self.sum, -1.0, sum()))
@@ -149,8 +156,8 @@ impl Forces {
         }
     }
 
-    /// The missing part of the forces, relative to the sum of g; 0 if no force is given. Where nothing slips tractions are linear in the forces,
-    /// however small these are: then it is relative to the forces, or to the tractions if these are larger.
+    /// The missing part of the given forces relative to the sum of g; 0 if no force is given. If no element slips, it is relative to the larger of
+    /// the given forces and the sum of |q|: then tractions are linear in the forces, which may be far below the sum of g.
     pub fn missing(&self, problem: &Problem, q: &[Vector]) -> f64 {
         if !self.any() {
             return 0.0;
@@ -169,20 +176,21 @@ impl Forces {
     }
 }
 
-/// The greatest force along a direction t without a component across it, of elements that carry at most `bound(i)` each.
+/// The greatest force in a direction t that n elements with the weights W carry, if their tractions are at most `bound(i)`. Its component across t is
+/// 0.
 ///
 /// ```text
-/// sum of W q  lies in the convex set  { F: F.d <= h(d) for all d },     h(d) = sum of g |W d|
-/// greatest = min h(t + c n) over c                                      n: across t
+/// the force, sum of W q, lies in the convex set  { F: F.d <= h(d) for all d },     h(d) = sum of g |W d|
+/// greatest = min h(t + c n) over c                                                 n: the unit vector across t
 /// ```
 ///
 /// h is convex. Its slope along c rises from negative to positive values. Bisection finds the zero of the slope.
-fn reach([x, y]: [&[f64]; 2], [along, aside]: Vector, n: usize, bound: &impl Fn(usize) -> f64) -> Result<f64> {
-    // g W of each element of C, for passes over these only.
+fn reach([x, y]: [&[f64]; 2], [tx, ty]: Vector, n: usize, bound: &impl Fn(usize) -> f64) -> Result<f64> {
+    // g W of the elements with a bound, so that the passes below visit only these.
     let of = (0..n).map(|i| (i, bound(i))).filter(|(_, g)| *g > 0.0).map(|(i, g)| [g * x[i], g * y[i]]);
     let mut scaled: Vec<Vector> = sparse((0..n).filter(|i| bound(*i) > 0.0).count(), "the bounds of forces")?;
     scaled.extend(of);
-    let direction = |c: f64| [along - c * aside, aside + c * along];
+    let direction = |c: f64| [tx - c * ty, ty + c * tx];
     let length = |[x, y]: Vector, d: Vector| (x * d[0]).hypot(y * d[1]);
     let sum = |of: &dyn Fn(Vector) -> f64| in_blocks(scaled.iter().map(|gw| of(*gw)));
     let h = |c: f64| sum(&|gw| length(gw, direction(c)));
@@ -190,22 +198,22 @@ fn reach([x, y]: [&[f64]; 2], [along, aside]: Vector, n: usize, bound: &impl Fn(
         let d = direction(c);
         sum(&|[x, y]| {
             let length = length([x, y], d);
-            let turned = -x * x * d[0] * aside + y * y * d[1] * along;
+            let slope_of_square = -x * x * d[0] * ty + y * y * d[1] * tx;
             if length > 0.0 {
-                turned / length
+                slope_of_square / length
             } else {
                 0.0
             }
         })
     };
-    // h(c) >= |c| h(n) - h(t), which exceeds h(0) beyond this c.
-    let across = sum(&|gw| length(gw, [-aside, along]));
-    let most = if across > 0.0 { 2.0 * h(0.0) / across } else { 0.0 };
-    let (low, high) = bisect((-most, most), |_, _| false, |c| !(slope(c) > 0.0));
+    // h(t + c n) >= |c| h(n) - h(t), which exceeds h(t) for larger c.
+    let across = sum(&|gw| length(gw, [-ty, tx]));
+    let largest = if across > 0.0 { 2.0 * h(0.0) / across } else { 0.0 };
+    let (low, high) = bisect((-largest, largest), |_, _| false, |c| !(slope(c) > 0.0));
     Ok(h(0.0).min(h(low)).min(h(high)))
 }
 
-/// The sum of a field that is 0 outside C, times the weights of creepages.
+/// The sum of a field times the weights of creepages: the force, if the field are tractions. The field is 0 outside C.
 pub fn sum_of(problem: &Problem, field: &[Vector]) -> Vector {
     fields::sum(problem.threads(), field.len(), |i| problem.weighted(i, field[i]))
 }
@@ -215,7 +223,7 @@ pub fn sum_of_bounds(problem: &Problem) -> f64 {
     fields::sum(problem.threads(), problem.bound.len(), |i| [problem.bound[i]])[0]
 }
 
-/// The sum of two fields together, as [`sum_of`].
+/// [`sum_of`] for the sum of two fields.
 pub fn sum_of_both(problem: &Problem, v: &[Vector], w: &[Vector]) -> Vector {
     fields::sum(problem.threads(), v.len(), |i| problem.weighted(i, add(v[i], w[i])))
 }

@@ -1,5 +1,7 @@
-//! Bounds that no traction reaches: those of glued elements, or all bounds if forces and motions are small. The unit of tractions is the largest
-//! bound. Relative to such a bound tractions and other bounds would be round-off. So bounds are lowered to what tractions may reach.
+//! Traction bounds far above all tractions: those of glued elements (a huge mu), or all bounds if forces and motions are small.
+//!
+//! The unit of tractions is the largest bound. Relative to a bound that is far too large, tractions and the other bounds would be round-off.
+//! Therefore bounds are lowered before the solve, to an upper bound on the tractions.
 
 use super::certificate::{scale, Certificate};
 use super::forces::Forces;
@@ -18,15 +20,15 @@ use crate::progress::Outcome;
 use crate::rectangle::Rectangle;
 use crate::sums::in_blocks;
 
-/// Bounds below this fraction of the largest are round-off and make the system singular. Their elements are solved with the bound 0, and get their
-/// traction from the slip.
+/// Bounds below this part of the largest one are round-off, and would make linear systems singular. Elements with such bounds are solved with the
+/// bound 0. Their tractions are then computed from their slips.
 pub(super) const NEGLIGIBLE_BOUND: f64 = 1e-17;
 
-/// Upper bound on the largest traction relative to its estimate, by which each element alone makes up for its slip.
+/// Bounds are lowered to this times the estimate of the largest traction. The estimate is that each element alone compensates its slip.
 const REACH: f64 = 1e3;
 
 impl Solver {
-    /// The largest value on the elements of a window; at least 0.
+    /// The largest value of a function on the elements of a box; at least 0.
     fn largest(&self, window: &Rectangle, of: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
         let rows = window.grid(&self.grid).my;
         let threads = self.threads.suited_to(self.grid.len());
@@ -34,7 +36,7 @@ impl Solver {
         fields::largest(&threads, rows, of_row)
     }
 
-    /// Solves in a window with bounds within reach. Returns the outcome, and whether bounds were lowered.
+    /// Solves in a box, with bounds lowered if they are far above the tractions. Returns the outcome, and whether bounds were lowered.
     pub(super) fn solve_within_reach(
         &mut self,
         (window, rolling): (&Rectangle, Option<Rolling>),
@@ -53,13 +55,13 @@ impl Solver {
         Ok((end, is_lowered))
     }
 
-    /// The largest bound to solve with, if bounds are to be lowered. Bounds by a law are not lowered.
+    /// The value to which larger bounds are lowered; none if bounds stay as they are. Bounds by a law of friction are not lowered.
     fn reached(&self, (largest, request): (f64, &Request<'_>), window: &Rectangle, forces: &Forces) -> Option<f64> {
-        // By creepages alone, small slips are solved with any bounds of similar size.
+        // With given creepages small slips are solved well with any bounds, if none of them is negligible beside the largest.
         let are_alike = || {
-            let inverses = self.largest(window, |i| inverse(request.bound(i)));
-            // The unit of tractions may exceed the largest bound by a factor of sqrt(2).
-            !(inverses * (NEGLIGIBLE_BOUND * largest) > 0.5)
+            let inverse_of_least = self.largest(window, |i| inverse(request.bound(i)));
+            // 0.5, because the unit of tractions may exceed the largest bound by a factor of sqrt(2).
+            !(inverse_of_least * (NEGLIGIBLE_BOUND * largest) > 0.5)
         };
         if request.friction.has_law() || !forces.any() && are_alike() {
             return None;
@@ -68,7 +70,7 @@ impl Solver {
         (reached > 0.0 && reached < largest).then_some(reached)
     }
 
-    /// The most that friction carries: the sum of the bounds times the area of an element.
+    /// The largest force that friction carries: the sum of the original bounds times the area of an element.
     fn carried(&self, request: &Request<'_>, is_lowered: bool) -> f64 {
         let area = self.grid.element_area();
         if is_lowered {
@@ -76,14 +78,14 @@ impl Solver {
         }
         let Problem { bound, operators, .. } = &self.levels[0].problem;
         let [sum] = fields::sum(&operators.threads, bound.len(), |k| [bound[k]]);
-        self.scales.own_traction([sum * area, 0.0])[0]
+        self.scales.callers_traction([sum * area, 0.0])[0]
     }
 
-    /// The gap of the [certificate](Certificate) of the result with the original bounds, after a solve with lowered ones.
+    /// The gap of the [certificate](Certificate) with the original bounds, after a solve with lowered bounds.
     pub(super) fn gap_of_bounds(&self, request: &Request<'_>) -> f64 {
         let (friction, grid, solution) = (request.friction, &self.grid, &self.solution);
         let Level { problem, state, .. } = &self.levels[0];
-        let [scale, _] = self.scales.own_displacement([scale(problem, state), 0.0]);
+        let [scale, _] = self.scales.callers_displacement([scale(problem, state), 0.0]);
         let found = friction.has_forces();
         let terms = |i: usize| {
             let (g, s, weight) = (request.bound(i), solution.slip[i], friction.weight_at(i));
@@ -95,11 +97,11 @@ impl Solver {
         Certificate::relative_gap(gap, work, least)
     }
 
-    /// An estimate of the largest traction if all elements stick.
+    /// An estimate of the largest traction, in the caller's units, if all elements stick.
     fn estimated_traction(&self, request: &Request<'_>, window: &Rectangle, forces: &Forces) -> f64 {
         let (friction, grid, kept) = (request.friction, &self.grid, &self.before);
         let held = if let Start::Held(offset) = request.start { length(offset) } else { 0.0 };
-        // In steady rolling an element displaces itself by the slip of all steps since it came into contact.
+        // In steady rolling the displacement of a particle compensates the rigid slips of all steps since it came into contact.
         let Rectangle { x, y } = window;
         let steps = match friction.motion {
             Motion::SteadyRolling => {
@@ -108,17 +110,21 @@ impl Solver {
             Motion::Shift | Motion::TransientRolling => 1.0,
         };
         let [xx, yy, _] = self.tangential.at(0.0, 0.0);
-        let had = match (friction.motion, friction.previous) {
-            // Tractions before steady rolling only begin the iteration.
+        let previous = match (friction.motion, friction.previous) {
+            // Previous tractions are only a first guess in steady rolling.
             (Motion::SteadyRolling, _) | (_, Previous::None) => 0.0,
             (_, Previous::Given(_) | Previous::Kept) => self.largest(window, |i| length(before(friction, kept, i))),
         };
-        // Forces are sums of weighted tractions.
-        let most = friction.weights.map_or(1.0, |[x, y]| self.largest(window, |i| inverse(x[i]).max(inverse(y[i]))));
-        steps * (held + self.largest_slip(request, window)) / xx.min(yy) + had + length(forces.sum) * most.max(1.0)
+        // Forces are sums of weighted tractions: a small weight needs a large traction.
+        let by_weight =
+            friction.weights.map_or(1.0, |[x, y]| self.largest(window, |i| inverse(x[i]).max(inverse(y[i]))));
+        steps * (held + self.largest_slip(request, window)) / xx.min(yy)
+            + previous
+            + length(forces.sum) * by_weight.max(1.0)
     }
 
-    /// The largest rigid slip of the elements of a window. Without arrays it is linear in the place, and largest at a corner.
+    /// The largest rigid slip of the elements of a box. If it follows from creepages and spin alone, it is linear in x and y and thus largest at a
+    /// corner.
     fn largest_slip(&self, request: &Request<'_>, window: &Rectangle) -> f64 {
         let (friction, grid) = (request.friction, &self.grid);
         let slip = |i: usize| length(request.rigid_slip(grid, i));
@@ -132,7 +138,7 @@ impl Solver {
     }
 }
 
-/// The inverse of a bound or of a weight; 0 of one that carries nothing.
+/// The inverse of the absolute value of a bound or of a weight; 0 if the value is 0.
 fn inverse(of: f64) -> f64 {
     if of == 0.0 {
         0.0

@@ -1,13 +1,15 @@
-//! The start of a grid of nested iteration: tractions interpolated from the coarser one.
+//! The start on a grid of the nested iteration: tractions interpolated from the next coarser grid.
 //!
-//! ```text
-//! start of the next grid: q per area in C, interpolated between the centres of elements in C, projected onto the disc;
-//!                         if all of these slip, g times the direction of q/g; in steady rolling g times q/g
-//! ```
+//! The values of the coarse elements in C around a fine element are interpolated bilinearly between their centres:
 //!
-//! In steady rolling a traction of large slip is turned towards -s. With the interpolated q/g as d, s = w + u with w of the finer grid and u
-//! interpolated, and k = |s|/(a0 g), the start is `d - 0.3 k^2 s/|s|`, projected onto the disc. With spin the direction of slip varies within
-//! a coarse element, which interpolation cannot represent; at small slip s is a difference of large numbers.
+//! * in a shift q, times the number of all children of the coarse element over the number of those in C, so that the force stays the same;
+//! * if all of these coarse elements slip, the direction of q/g instead, times g of the fine element;
+//! * in steady rolling q/g, times g of the fine element.
+//!
+//! The result is projected onto the disc. In steady rolling a traction of large slip is also turned towards -s: with the interpolated q/g as d,
+//! s = w + u with w of the finer grid and u interpolated, and k = |s|/(a0 g), the start is `g (d - 0.3 k^2 s/|s|)`. With spin the direction of slip
+//! varies within a coarse element, which interpolation cannot represent. At small slip s is a difference of large numbers, so that k^2 gives s little
+//! weight.
 
 use super::certificate::ON_THE_CIRCLE;
 use super::plane::{add, onto_disc, plus, square, Vector};
@@ -16,35 +18,36 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 
-/// Weight of the turn of tractions against the slip. With it 22 of 204 cases of rolling take too many products, without it 30
+/// The weight of k^2 in the turn of tractions towards -s. With it 22 of 204 cases of rolling take too many products, without it 30
 /// (docs/notes/2026-11-friction.md).
 const TURN_WEIGHT: f64 = 0.3;
 
-/// Elements of a grid in one of the next coarser.
+/// The number of fine elements in an element of the next coarser grid.
 pub fn children(fine: &Grid, coarse: &Grid) -> usize {
     (1 + usize::from(coarse.dx > fine.dx)) * (1 + usize::from(coarse.dy > fine.dy))
 }
 
-/// The ratio of the steps of steady rolling on the coarse and the fine grid.
+/// The length of a step of steady rolling on the coarse grid over that on the fine grid; 1 for other motions.
 pub fn step_ratio(coarse: &Problem, fine: &Problem) -> f64 {
     match (coarse.operators.step(), fine.operators.step()) {
         (Some(coarse), Some(fine)) => coarse.distance / fine.distance,
         _ => 1.0,
     }
 }
-/// q on the next finer grid, from the coarser one.
+
+/// Sets q and the creepages on a grid from the solution on the next coarser grid, as the module describes. u is left undefined.
 pub fn interpolate((coarse, from_state): (&Problem, &State), (fine, state): (&mut Problem, &mut State)) -> Result<()> {
     let (from, to) = (coarse.grid, fine.grid);
-    // The number of all fine elements in a coarse one, over the number of those in C. So q on the latter carries the force of the coarse element.
+    // For each coarse element: the number of its children over the number of those in C.
     let mut shares: Vec<f64> = zeros(from.len(), "the start from a coarser grid")?;
     fine.threads().for_each_plain_row(&mut shares, from.mx, |iy, row| {
         for (ix, share) in row.iter_mut().enumerate() {
-            let all = from.children(&to, iy * from.mx + ix);
-            let in_contact = all.filter(|&child| fine.bound[child] > 0.0).count();
+            let of_element = from.children(&to, iy * from.mx + ix);
+            let in_contact = of_element.filter(|&child| fine.bound[child] > 0.0).count();
             *share = children(&to, &from) as f64 / in_contact.max(1) as f64;
         }
     });
-    // Behind the leading edge tractions of steady rolling grow like their bound. So q/g is interpolated.
+    // In steady rolling q/g is interpolated, because behind the leading edge tractions grow like their bound.
     let is_rolling = fine.operators.rolling.is_some();
     let shorter = 1.0 / step_ratio(coarse, fine);
     fine.offset = coarse.offset.map(|w| shorter * w);
@@ -86,16 +89,19 @@ pub fn interpolate((coarse, from_state): (&Problem, &State), (fine, state): (&mu
     Ok(())
 }
 
-/// Weighted sums over the coarse elements around a fine one.
+/// Sums over the coarse elements in C around a fine element, with the weights of the interpolation.
 struct Mean {
     /// The sum of q/g.
     direction: Vector,
-    /// The sum of q, with the shares.
+    /// The sum of q, times the share of each coarse element.
     traction: Vector,
     /// The sum of u.
     displaced: Vector,
+    /// The sum of the weights.
     weights: f64,
+    /// Whether all of the coarse elements slip.
     all_slip: bool,
+    /// Whether any of the coarse elements slips.
     any_slip: bool,
 }
 
@@ -107,6 +113,7 @@ impl Default for Mean {
 }
 
 impl Mean {
+    /// Adds a coarse element with its bound, share, traction and displacement.
     fn add(&mut self, weight: f64, bound: f64, share: f64, q: Vector, u: Vector) {
         let slips = square(q).sqrt() >= ON_THE_CIRCLE * bound;
         (self.all_slip, self.any_slip) = (self.all_slip && slips, self.any_slip || slips);
@@ -116,7 +123,7 @@ impl Mean {
         self.weights += weight;
     }
 
-    /// q/g; of length 1 if all slip.
+    /// The interpolated q/g. If all of the coarse elements slip, it is scaled to the length 1.
     fn direction(&self) -> Vector {
         let length = square(self.direction).sqrt();
         let by = if self.all_slip && length > 0.0 { length } else { self.weights };
@@ -137,15 +144,15 @@ fn turned_against(d: Vector, s: Vector, stiff: f64) -> Vector {
     turned.map(|v| v / by)
 }
 
-/// The two coarse places around each fine one, with their weights.
+/// For each fine element along one direction: the two coarse elements around its centre, with the weights of linear interpolation.
 fn places(fine: usize, coarse: usize) -> Result<Vec<[(usize, f64); 2]>> {
     let of = |i: usize| if fine == coarse { [(i, 1.0), (i, 0.0)] } else { neighbours(i, coarse) };
     Ok(collected((0..fine).map(of), "the start from a coarser grid")?)
 }
 
-/// The two coarse places around a fine one, with their weights.
+/// The coarse element that contains the fine element number `fine`, and the nearer neighbour of that, with their weights.
 fn neighbours(fine: usize, coarse: usize) -> [(usize, f64); 2] {
-    let own = fine / 2;
-    let other = if fine % 2 == 0 { own.checked_sub(1) } else { Some(own + 1).filter(|k| *k < coarse) };
-    other.map_or([(own, 1.0), (own, 0.0)], |other| [(own, 0.75), (other, 0.25)])
+    let parent = fine / 2;
+    let other = if fine % 2 == 0 { parent.checked_sub(1) } else { Some(parent + 1).filter(|k| *k < coarse) };
+    other.map_or([(parent, 1.0), (parent, 0.0)], |other| [(parent, 0.75), (other, 0.25)])
 }

@@ -1,12 +1,12 @@
-//! Nested iteration: the problem is solved on coarser grids, coarsest first. Each solution is the start on the next grid.
+//! The grids of nested iteration, and the restriction of the problem to them. Grids are coarsened by two until the shorter side has fewer than 24
+//! elements. A single row of elements is coarsened along the row only.
 //!
-//! ```text
-//! g of a coarse element: the mean of its children's, 0 without children in C; w: the mean of those in C,
-//!                                                                              in steady rolling times 2: a step is 2 dq long,
-//!                                                                              and w a third of the difference ahead
-//! ```
+//! On a coarse element, whose children are the fine elements in it:
 //!
-//! Grids are coarsened by two until the shorter side has fewer than 24 elements, a single row along itself only.
+//! * g is the mean of the children's g, where children outside C count as 0;
+//! * w, the weights of creepages and the layer are means over the children in C;
+//! * in steady rolling the step on the coarse grid is longer by a factor f, usually 2. So w is f times the mean of the children's w. Spin changes the
+//!   rigid slip from place to place; therefore w is taken [`SPIN_SHIFT`] (f - 1) fine steps ahead of the centre.
 
 use std::iter::successors;
 
@@ -27,19 +27,22 @@ use crate::threads::Threads;
 
 /// A side with fewer elements is not coarsened.
 const COARSEST: usize = 24;
-/// The slip by spin of a coarse element is taken ahead of its centre by this share of the difference of both steps.
+/// The distance from the centre at which the rigid slip by spin of a coarse element is taken, over the difference of the coarse and the fine step.
 const SPIN_SHIFT: f64 = 1.0 / 3.0;
 
-/// One grid: its problem, its unknowns, the memory of its iteration.
+/// One grid of the nested iteration.
 pub struct Level {
+    /// The tangential problem on this grid.
     pub problem: Problem,
+    /// Its tractions and displacements.
     pub state: State,
+    /// The fields of the iterations on this grid.
     pub memory: Memory,
 }
 
 impl Level {
-    /// A level on a grid, with coefficients that reach far enough. `single` tells whether directions may be multiplied in single precision,
-    /// `only_single` whether all products are.
+    /// Sets up the operators of a grid. `quadrant` has the coefficients of all offsets that they need. `single` tells whether products of search
+    /// directions may be in single precision, `only_single` whether all products are.
     fn new(
         quadrant: &Quadrant,
         grid: Grid,
@@ -53,8 +56,8 @@ impl Level {
         Ok(Level { problem: Problem::new(grid, operators)?, state, memory })
     }
 
-    /// The force and the found creepages of a step of rolling, in the units of the iterations.
-    pub fn found(&self) -> (Vector, Vector) {
+    /// The force, and the creepages found for given forces, of a step of rolling, in the units of the iterations.
+    pub fn force_and_creepages(&self) -> (Vector, Vector) {
         let Problem { grid, offset, operators, .. } = &self.problem;
         let sum = super::forces::sum_of(&self.problem, &self.state.q);
         let distance = operators.step().map_or(1.0, |rolling| rolling.distance);
@@ -70,7 +73,7 @@ impl Level {
     }
 }
 
-/// The next coarser grid, if there is one.
+/// The next coarser grid; none if the grid is the coarsest.
 fn coarser(grid: &Grid) -> Option<Grid> {
     let Grid { mx, my, dx, dy } = *grid;
     let (in_x, in_y) = match (mx, my) {
@@ -86,8 +89,8 @@ fn coarser(grid: &Grid) -> Option<Grid> {
     Some(Grid { mx, my, dx, dy })
 }
 
-/// The grids of a box, the finest first. `single` tells whether directions may be multiplied in single precision. Then all products on coarser
-/// grids are in single precision.
+/// Sets up a box and its coarser grids, the finest first. `single` tells whether products of search directions may be in single precision. Then all
+/// products on the coarser grids are in single precision.
 pub fn levels(
     tangential: &Tangential,
     grid: Grid,
@@ -112,13 +115,13 @@ pub fn levels(
     Ok(levels)
 }
 
-/// Restricts g, w, weights and layer to the next coarser grid; q = 0.
+/// Restricts g, w, the weights and the layer to the next coarser grid, as the module describes, and sets q = 0 there.
 pub fn restrict(fine: &Problem, coarse: &mut Level) -> Result<()> {
     let Level { problem, state, .. } = coarse;
     let (from, to) = (fine.grid, problem.grid);
     let longer = step_ratio(problem, fine);
     let all = children(&from, &to);
-    let turned = fine.ahead.map(|w| SPIN_SHIFT * longer * (longer - 1.0) * w);
+    let by_spin = fine.ahead.map(|w| SPIN_SHIFT * longer * (longer - 1.0) * w);
     let element = |i: usize| {
         let (mut bound, mut slip, mut rigid, mut count) = (0.0, [0.0; 2], [0.0; 2], 0);
         for child in to.children(&from, i).filter(|&child| fine.bound[child] > 0.0) {
@@ -128,9 +131,10 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) -> Result<()> {
             count += 1;
         }
         let share = longer / f64::from(count.max(1));
-        let of_spin = f64::from(count.min(1));
-        let of_all = |w: Vector| plus(w.map(|w| share * w), of_spin, turned);
-        (bound / all as f64, of_all(slip), of_all(rigid))
+        // Without children in C the slip is 0.
+        let is_inside = f64::from(count.min(1));
+        let of_step = |sum: Vector| plus(sum.map(|w| share * w), is_inside, by_spin);
+        (bound / all as f64, of_step(slip), of_step(rigid))
     };
     let rows = problem.bound.chunks_mut(to.mx).zip(problem.slip.chunks_mut(to.mx)).zip(problem.rigid.chunks_mut(to.mx));
     let mut rows = collected(rows, "the rows of a coarser grid")?;
@@ -139,7 +143,7 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) -> Result<()> {
             (bound[ix], slip[ix], rigid[ix]) = element(iy * to.mx + ix);
         }
     });
-    // Means over the children in C.
+    // The mean of a field over the children of element i that are in C.
     let mean = |of: &dyn Fn(usize) -> Vector, i: usize| {
         let in_contact = || to.children(&from, i).filter(|&child| fine.bound[child] > 0.0);
         let count = in_contact().count().max(1) as f64;

@@ -1,24 +1,27 @@
-//! The tangential problem: tractions q on C with `|q| <= g = mu p`, and slip opposite to them. docs/friction.md describes it.
+//! The tangential problem: find tractions q on the contact area C with `|q| <= g = mu p`, so that elements with `|q| < g` stick and the slip of the
+//! others is opposite to q. docs/friction.md describes the problem for users.
 //!
 //! | module | contents |
 //! |---|---|
-//! | [`coefficients`], `half_space`, `compliance`, `near_element`, `series`, `quadrant` | influence coefficients of tangential tractions: their sources, near and far from an element; those kept for all operators |
-//! | [`Toeplitz`] | products of two components, by FFT |
-//! | `operators`, `displaced` | the operators of the box around C, and displacements between its centres |
-//! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, its certificate, stick and slip |
-//! | `tables`, `row_tables`, `row_product` | the caller's coefficients, also per loaded row, and products with these |
-//! | `rolling_tables` | tables of bodies that relax and roll steadily |
-//! | `excess` | a layer between the bodies that differs between elements |
-//! | `pairs`, `beside` | SIMD passes over fields by component, extension of residuals beyond C; fields of pairs: `methods::fields` |
-//! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for given motions; their fields, on C alone |
-//! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for given forces and if the gradients stall |
-//! | `downhill` | projected Newton, for given motions if the other methods cycle |
-//! | `glued` | bounds that no traction reaches |
-//! | `balance`, `corral`, `bracket` | creepages of given forces if Newton's method stalls |
+//! | [`coefficients`], `half_space`, `compliance`, `near_element`, `series` | influence coefficients, near an element and far from it |
+//! | `quadrant` | the coefficients of one box, computed once for all of its operators |
+//! | [`Toeplitz`] | products with coefficients of two components, by FFT |
+//! | `operators`, `displaced` | the operators of the box around C; displacements at points between the centres of its elements |
+//! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, its certificate, the prediction of stick and slip |
+//! | `tables`, `row_tables`, `row_product` | the caller's coefficients: one table, or one per loaded row; products with the latter |
+//! | `rolling_tables` | tables of viscoelastic bodies in steady rolling |
+//! | `excess` | a layer between the bodies whose compliance differs between elements |
+//! | `pairs`, `beside` | SIMD passes over fields of two components; the extension of residuals beyond C |
+//! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for given motions; their fields |
+//! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton: steady rolling, given forces, other stalls |
+//! | `downhill` | the projected Newton method: for given motions, if the other methods cycle |
+//! | `glued` | bounds far above the tractions, which are lowered before the solve |
+//! | `balance`, `corral`, `bracket` | the search for the creepages that belong to given forces |
 //! | `sensitivity`, `derivatives` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: the coupling of the normal and the tangential problem |
 //! | [`law`], `with_law`, `iterate_with_law` | bounds that depend on the slip, and the state of the interface's particles |
-//! | `levels`, `interpolation`, `nested`, `request`, `unit`, `scales`, `take_over`, `solver`, `result`, `last` | coarser grids, nested iteration, units, the whole solve, and its undoing |
+//! | `levels`, `interpolation`, `nested` | coarser grids and nested iteration |
+//! | `request`, `unit`, `scales`, `take_over`, `solver`, `result`, `last` | the whole solve: request, units, start, result and its copy |
 
 mod balance;
 mod beside;

@@ -1,9 +1,9 @@
-//! The integrals of the tangential coefficients next to an element: closed forms, and Gauss-Legendre in one direction (see
-//! [`coefficients`](super::coefficients)).
+//! The integrals a and b of the tangential coefficients near an element, by closed forms, or by a closed form in one direction and Gauss-Legendre in
+//! the other (see [`half_space`](super::half_space)).
 
 use crate::influence::gauss_each;
 
-/// a and b at an offset `kx, ky >= 0` nearer than the series reaches.
+/// The integrals a and b at an offset `kx, ky >= 0`, in elements, nearer than the series reaches.
 pub fn near(kx: f64, ky: f64, dx: f64, dy: f64) -> (f64, f64) {
     if ky >= 2.0 {
         let [a, sum] = gauss_each(ky * dy, dy, |y| along(kx, dx, y));
@@ -19,11 +19,11 @@ pub fn near(kx: f64, ky: f64, dx: f64, dy: f64) -> (f64, f64) {
     }
 }
 
-/// The integrals of `y^2/r^3`, `[x/r]`, and of `1/r`, `[asinh(x/y)]`, over x in an interval of length d about k d, at the distance y, without
-/// cancellation.
+/// The integrals over x of `y^2/r^3` and of `1/r`, on the interval of length d about k d, at the distance y. They are the differences of `x/r` and of
+/// `asinh(x/y)` between the ends of the interval, computed without cancellation.
 fn along(k: f64, d: f64, y: f64) -> [f64; 2] {
     let (plus, minus) = ((k + 0.5) * d, (k - 0.5) * d);
-    // Lengths are in units of the element: their squares are in range.
+    // Lengths are of the order of 1, so that their squares are in range.
     let r = |x: f64| (x * x + y * y).sqrt();
     let rp = r(plus);
     if k == 0.0 {

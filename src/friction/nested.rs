@@ -1,7 +1,8 @@
-//! Nested iteration: the coarsest grid first. Each grid starts from the solution on the previous one.
+//! Nested iteration: the coarsest grid is solved first, and each finer grid starts from the interpolated solution on the coarser one.
 //!
-//! Several methods solve a grid, each from the state at which the one before stalled. Gradients come first, then Newton's method. Newton's method
-//! comes first in steady rolling, with given forces, and if most of C slipped in the step before.
+//! On each grid several methods follow each other ([`ways`]). If one stalls, the next starts from the best state so far. Projected conjugate
+//! gradients come first, then Newton's method. Newton's method comes first in steady rolling, with given forces, and if nearly all of C slips at the
+//! start.
 
 use super::balance::balanced;
 use super::best::Best;
@@ -17,38 +18,44 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::progress::{Outcome, METHOD_SHARE};
 
-/// Residual on coarser grids: larger errors cost more on the finest grid.
+/// The tolerance of coarser grids, if the caller's is not larger. With a larger one the finest grid takes more products.
 pub const COARSE_TOLERANCE: f64 = 1e-3;
-/// Residual on the grid next to the finest if its forces are used: their error is then about 1e-5 of mu N.
+/// The tolerance of the grid next to the finest if its forces are used for estimates: their error is then about 1e-5 of mu N.
 pub const COUNTED_TOLERANCE: f64 = 1e-4;
-/// Most gradient iterations on each coarser grid.
+/// The largest number of iterations of the conjugate gradients on a coarser grid.
 const COARSE_LIMIT: u64 = 60;
-/// Largest part of the products for all coarser grids together.
+/// The largest part of all products that coarser grids together may take.
 const COARSE_SHARE: f64 = 0.5;
-/// Products of Newton's method with balanced creepages, which comes first near full slip: half of 3800 random scenes then take less than half of the
-/// products. If a single element sticks, the method cycles.
+/// The most products of Newton's method with balanced creepages, which comes first near full slip. With it half of 3800 random scenes take less than
+/// half of the products. If a single element sticks, the method cycles.
 const BALANCED_PRODUCTS: u64 = 8;
-/// Products of plain Newton steps, which come next and may cycle as well.
+/// The most products of Newton's method without balanced creepages, which comes next near full slip, and may cycle as well.
 const PLAIN_PRODUCTS: u64 = 60;
-/// Products reserved for the certificates at the end of an unfinished solve.
+/// The products reserved for certificates at the end of a solve that does not converge.
 pub const KEPT_BACK: u64 = 5;
 
-/// The products so far, and the caller's callback.
+/// The products of a solve, and the caller's callback.
 pub struct Work<'a> {
-    /// Products on all grids, in products on the finest, and their limit.
+    /// The products so far on all grids, counted in products on the finest grid.
     pub products: f64,
+    /// The most products, counted likewise.
     pub limit: u64,
-    /// Largest residual of the grid next to the finest.
+    /// The tolerance of the grid next to the finest, if the caller's is not larger.
     pub coarse: f64,
+    /// Called with the grid and the residual of each iteration. It returns false to cancel.
     pub watch: &'a mut dyn FnMut(&Grid, f64) -> bool,
 }
 
-/// One method to solve a grid.
+/// A method that solves the problem of a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
+    /// Projected conjugate gradients (module `shift`).
     Gradients,
+    /// The semismooth Newton method (module `newton`).
     Newton(Manner),
+    /// The projected Newton method (module `downhill`).
     Downhill,
+    /// The search for creepages of given forces (module `bracket`).
     Bracket,
 }
 
@@ -64,7 +71,8 @@ impl Way {
     }
 }
 
-/// Solves the finest of `levels`; `nested` tells whether to start on the coarsest, `mostly_slips` whether most of C slipped in the step before.
+/// Solves the problem on the finest of `levels`. `nested` tells whether to start on the coarsest one, `mostly_slips` whether nearly all of C slips at
+/// the start.
 pub fn solve(
     levels: &mut [Level],
     forces: Forces,
@@ -85,7 +93,7 @@ pub fn solve(
             let area = level.problem.grid.element_area() / finest_area;
             let forces = forces.times(1.0 / area);
             let coarse = if l == 1 { work.coarse } else { COARSE_TOLERANCE };
-            let end = one(level, (forces, forces.any()), tolerance.max(coarse), part, work)?;
+            let end = solve_level(level, (forces, forces.any()), tolerance.max(coarse), part, work)?;
             if end == Outcome::Cancelled {
                 return Ok(end);
             }
@@ -95,16 +103,17 @@ pub fn solve(
             problem.refresh_to(state, tolerance);
         }
     }
-    one(&mut levels[0], (forces, forces.any() || mostly_slips), tolerance, 1.0, work)
+    solve_level(&mut levels[0], (forces, forces.any() || mostly_slips), tolerance, 1.0, work)
 }
 
-/// The methods to solve a grid, in order, with the most products of each. `slips`: with given forces, near full slip.
+/// The methods for a grid, in order, with the most products of each. `newton_first` applies to given motions without steady rolling. `certified` is
+/// true on the finest grid, `slips` near full slip with given forces.
 fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool), slips: bool) -> Vec<(Way, u64)> {
     use Way::{Gradients, Newton};
-    let as_many = |ways: &[Way]| ways.iter().map(|way| (*way, u64::MAX)).collect();
+    let unlimited = |ways: &[Way]| ways.iter().map(|way| (*way, u64::MAX)).collect();
     if forces.any() && !certified {
         // On a coarser grid these need not converge: the next grid starts from their last state.
-        as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced)])
+        unlimited(&[Newton(Manner::Plain), Newton(Manner::Balanced)])
     } else if slips {
         vec![
             (Newton(Manner::Balanced), BALANCED_PRODUCTS),
@@ -112,15 +121,15 @@ fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool
             (Way::Bracket, u64::MAX),
         ]
     } else if forces.any() {
-        as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::InTurns), Way::Bracket])
+        unlimited(&[Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::InTurns), Way::Bracket])
     } else if is_rolling {
-        as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::Plain)])
+        unlimited(&[Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::Plain)])
     } else {
-        as_many(&[if newton_first { Newton(Manner::Plain) } else { Gradients }, Newton(Manner::Plain), Way::Downhill])
+        unlimited(&[if newton_first { Newton(Manner::Plain) } else { Gradients }, Newton(Manner::Plain), Way::Downhill])
     }
 }
 
-/// Whether given forces let nearly all of C slip. This is predicted from the current displacements with balanced creepages.
+/// Predicts whether nearly all of C will slip with given forces, from the present displacements and balanced creepages.
 fn mostly_slips(level: &mut Level, forces: Forces) -> Result<bool> {
     let Level { problem, state, memory, .. } = level;
     let (offset, rho) = (problem.offset, 1.0 / compliance(problem));
@@ -131,7 +140,7 @@ fn mostly_slips(level: &mut Level, forces: Forces) -> Result<bool> {
     Ok(problem.places.is_mostly_slip(memory.tangent.slip_count))
 }
 
-/// The products allowed for the finest grid, or for all coarser ones together.
+/// The most products up to the end of the finest grid if `certified`, or up to the end of a coarser grid.
 fn products_of(limit: u64, certified: bool) -> f64 {
     if certified {
         limit.saturating_sub(KEPT_BACK).max(limit / 2) as f64
@@ -140,8 +149,9 @@ fn products_of(limit: u64, certified: bool) -> f64 {
     }
 }
 
-/// Solves one grid from its state; `part` is the work of one of its products, relative to the finest grid.
-fn one(
+/// Solves the problem of one grid from its state, by one method after the other. `part` is the number of its elements over that of the finest grid: a
+/// product counts as this part of a product on the finest grid.
+fn solve_level(
     level: &mut Level,
     (forces, newton_first): (Forces, bool),
     tolerance: f64,
@@ -150,14 +160,14 @@ fn one(
 ) -> Result<Outcome> {
     let Level { problem, state, .. } = &mut *level;
     let grid = problem.grid;
-    // Without motion before or now, forces of 0 need no creepage.
+    // If there is no motion and there are no previous displacements, q = 0 meets forces of 0, with creepages of 0.
     let is_held = !forces.any() && problem.offset != [0.0; 2];
     if forces.are_zero() && !is_held && problem.rms(|i| problem.slip[i]) == 0.0 {
         problem.offset = [0.0; 2];
         state.unload(problem.threads());
         return Ok(Outcome::Converged);
     }
-    problem.given = if forces.any() { problem.rms(|i| problem.rigid[i]) } else { 0.0 };
+    problem.rms_given_slip = if forces.any() { problem.rms(|i| problem.rigid[i]) } else { 0.0 };
     let certified = part == 1.0;
     let (mut end, mut best) = (Outcome::Stagnated, Best::none());
     let all = products_of(work.limit, certified);
@@ -166,7 +176,7 @@ fn one(
     for (k, &(way, most)) in ways.iter().enumerate() {
         let Level { problem, state, memory, .. } = &mut *level;
         let left = ((all - work.products) / part).max(0.0);
-        // Newton's method in turns serves near full slip only.
+        // Newton's method in turns is used near full slip only.
         if way == Way::Newton(Manner::InTurns) && !problem.places.is_mostly_slip(memory.tangent.slip_count) {
             continue;
         }
@@ -199,7 +209,7 @@ fn one(
     Ok(end)
 }
 
-/// Solves one grid by one method.
+/// Solves the problem of one grid by one method, from its state.
 fn by(way: Way, level: &mut Level, best: &mut Best, forces: Forces, goal: Goal<'_>) -> Result<Outcome> {
     let Level { problem, state, memory, .. } = level;
     match way {

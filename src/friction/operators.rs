@@ -1,4 +1,4 @@
-//! The operators of one grid: products with A or B, and their approximate inverses.
+//! The operators of one grid: products with A, or with B in steady rolling, and an approximate inverse of A.
 
 use super::coefficients::Tangential;
 use super::excess::Excess;
@@ -14,38 +14,41 @@ use crate::operator::fft::Real;
 use crate::threads::Threads;
 use toeplitz::Memory;
 
-/// Factor on the number of elements in the choice of threads: an iteration multiplies more than the normal problem.
+/// The number of threads is chosen for this many times the elements of the grid, because a tangential iteration takes more time than a normal one.
 const WORK_FACTOR: usize = 4;
 
-/// Products with A, or in steady rolling with B, in double and in single precision, and with a circulant near the inverse of A.
+/// Products with A, or with B in steady rolling, in double and in single precision; and products with the inverse of a circulant near A.
 pub struct Operators {
-    /// The coefficients.
+    /// The influence coefficients, in the units of the iterations.
     pub tangential: Tangential,
     /// The product in double precision. None on a coarser grid, which uses single precision only, or with tables per loaded row.
     exact: Option<(Toeplitz<f64>, Memory<f64>)>,
+    /// The product in single precision. None if all products are in double precision.
     fast: Option<(Toeplitz<f32>, Memory<f32>)>,
+    /// The product with the inverse of the circulant. None if the circulant is not positive definite: then `1/a0` takes its place.
     inverse: Option<(Toeplitz<f32>, Memory<f32>)>,
-    /// The product of tables per loaded row, in place of `exact` and `fast`.
+    /// The product with tables per loaded row, in place of `exact` and `fast`.
     rows: Option<RowProduct>,
-    /// In steady rolling: the step of B, and the sweep that inverts its difference.
+    /// In steady rolling: the step of B, and the sweep that solves its difference equation.
     pub rolling: Option<(Rolling, Sweep)>,
-    /// A layer between the bodies, if it is not uniform.
+    /// The part of a layer between the bodies that differs between elements; none if the layer is uniform.
     pub excess: Option<Excess>,
-    /// The displacement of an element by a unit traction on itself, the larger of both directions. In steady rolling:
-    /// the change of this displacement in a step.
+    /// The displacement of an element by a unit traction on itself, the larger one of both directions. In steady rolling it is the change of this
+    /// displacement in a step.
     pub self_influence: f64,
-    /// The self-influence without rolling.
+    /// The self-influence without rolling: the greatest coefficient of A.
     a0: f64,
     /// The unit of the coefficients, a power of two.
     unit: f64,
+    /// The threads that suit the size of the grid.
     pub(super) threads: Threads,
-    /// Products since the last call of [`Problem::take_products`](super::problem::Problem::take_products).
+    /// The number of products since the last call of [`Problem::take_products`](super::problem::Problem::take_products).
     pub(super) products: u64,
 }
 
 impl Operators {
-    /// Sets up the products on a grid: in single precision if `single`, otherwise in double precision. The coefficients
-    /// must reach far enough. Iterations need further operators: see [`Operators::prepare`].
+    /// Sets up the product on a grid, in single precision if `single`, otherwise in double precision. `quadrant` has the coefficients of all offsets
+    /// that are needed. Iterations also need [`Operators::prepare`].
     pub fn new(
         quadrant: &Quadrant,
         grid: &Grid,
@@ -66,12 +69,12 @@ impl Operators {
         };
         let [xx, yy, _] = tangential.at(0.0, 0.0);
         let rolling = rolling.map(|rolling| (rolling, Sweep::new(&rolling)));
-        // Coefficients between the centres are interpolated as in the sweep.
+        // The coefficients one step ahead are interpolated as in the sweep.
         let at = |x: f64, y: f64| match tangential.uneven() {
-            Some(own) if (x, y) != (0.0, 0.0) => own.whole_at(x as i64, y as i64),
+            Some(tables) if (x, y) != (0.0, 0.0) => tables.whole_at(x as i64, y as i64),
             _ => tangential.at(x, y),
         };
-        let there = rolling.as_ref().map_or([0.0; 2], |(_, sweep)| sweep.ahead_of(at));
+        let ahead = rolling.as_ref().map_or([0.0; 2], |(_, sweep)| sweep.ahead_of(at));
         Ok(Operators {
             exact: exact.map(with_workspace).transpose()?,
             fast: fast.map(with_workspace).transpose()?,
@@ -79,7 +82,7 @@ impl Operators {
             rows,
             rolling,
             excess: None,
-            self_influence: (xx - there[0]).max(yy - there[1]),
+            self_influence: (xx - ahead[0]).max(yy - ahead[1]),
             a0: xx.max(yy),
             unit: unit_of(xx),
             products: 0,
@@ -88,7 +91,7 @@ impl Operators {
         })
     }
 
-    /// Sets up the operators of iterations: products of directions, in single precision if `single`, and the inverse.
+    /// Sets up what iterations need: products of search directions, in single precision if `single`, and the approximate inverse.
     pub fn prepare(&mut self, quadrant: &Quadrant, grid: &Grid, single: bool) -> Result<()> {
         if let (true, None, Some((exact, _))) = (single, &self.fast, &self.exact) {
             self.fast = Some(with_workspace(exact.in_precision()?)?);
@@ -98,18 +101,19 @@ impl Operators {
         Ok(())
     }
 
-    /// The greatest coefficient of A.
+    /// The greatest coefficient of A: that of an element on itself, in the direction where it is larger.
     pub fn greatest(&self) -> f64 {
         self.a0
     }
 
-    /// The influence of element k on itself, with the compliance of its layer. In steady rolling: its change in a step.
-    pub fn own_influence(&self, k: usize) -> f64 {
-        let stays = self.rolling.as_ref().map_or(0.0, |(_, sweep)| sweep.own());
-        self.self_influence + self.excess.as_ref().map_or(0.0, |excess| (1.0 - stays) * excess.at(k))
+    /// The self-influence of element k with the compliance of its layer, which may differ between elements. In steady rolling it is the change in a
+    /// step.
+    pub fn influence_on_itself(&self, k: usize) -> f64 {
+        let own_weight = self.rolling.as_ref().map_or(0.0, |(_, sweep)| sweep.own());
+        self.self_influence + self.excess.as_ref().map_or(0.0, |excess| (1.0 - own_weight) * excess.at(k))
     }
 
-    /// An element's influence on itself, relative to that without a layer.
+    /// The self-influence without rolling, relative to that without a layer between the bodies.
     pub fn relative_compliance(&self) -> f64 {
         self.a0 / (self.a0 - self.tangential.layer())
     }
@@ -119,26 +123,27 @@ impl Operators {
         self.rolling.as_ref().map(|(rolling, _)| *rolling)
     }
 
-    /// `u = A q` in double precision, or B q, for q of the order of `unit`; on coarser grids in the precision available.
+    /// Computes `u = A q`, or B q in steady rolling, for q of the order of `unit`. The product is in double precision, except on coarser grids that
+    /// have single precision only.
     pub fn multiply(&mut self, q: &[Vector], unit: f64, u: &mut [Vector]) {
         match (&mut self.rows, &mut self.exact, &mut self.fast) {
             (Some(rows), ..) => rows.apply(q, u),
             (_, Some((operator, workspace)), _) => operator.apply(q, 1.0, u, workspace),
             (.., Some((operator, workspace))) => operator.apply(q, unit_of(unit), u, workspace),
-            _ => unreachable!("there is one of them"),
+            _ => unreachable!("there is one of them"), // see `new`
         }
         self.add_excess(q, u);
         self.products += 1;
     }
 
-    /// Adds the displacement of a layer beyond its uniform part.
+    /// Adds the displacements by the part of a layer that is not uniform.
     fn add_excess(&self, q: &[Vector], u: &mut [Vector]) {
         if let Some(excess) = &self.excess {
             excess.add(|i| q[i], self.rolling.as_ref().map(|(_, sweep)| sweep), |i, v| u[i] = add(u[i], v));
         }
     }
 
-    /// [`Operators::multiply`] in single precision, if there is one.
+    /// [`Operators::multiply`], in single precision if that product is set up.
     pub fn multiply_fast(&mut self, q: &[Vector], unit: f64, u: &mut [Vector]) {
         let Some((operator, workspace)) = &mut self.fast else { return self.multiply(q, unit, u) };
         operator.apply(q, unit_of(unit), u, workspace);
@@ -146,7 +151,7 @@ impl Operators {
         self.products += 1;
     }
 
-    /// The product of fields by component. Displacements are in the unit of the tractions times [`unit`](Self::unit).
+    /// Computes `u = A q/unit`, or B q/unit, for fields by component, with the [unit](Self::unit) of the coefficients.
     pub fn multiply_plain<S: Real>(&mut self, q: [&[S]; 2], u: [&mut [S]; 2]) {
         let [ux, uy] = u;
         match (&mut self.rows, &mut self.exact, &mut self.fast) {
@@ -171,7 +176,7 @@ impl Operators {
         self.unit
     }
 
-    /// Whether directions are multiplied in single precision.
+    /// Whether search directions are multiplied in single precision.
     pub fn has_fast(&self) -> bool {
         self.fast.is_some()
     }
@@ -181,7 +186,7 @@ impl Operators {
         self.exact.is_none() || self.fast.is_none()
     }
 
-    /// Approximately `q = A^-1 u`, for tractions of the order of `unit`.
+    /// Computes `q = M u`, where M is the inverse of a circulant near A. Tractions are of the order of `unit`.
     pub fn precondition(&mut self, u: &[Vector], unit: f64, q: &mut [Vector]) {
         let a0 = self.a0;
         match &mut self.inverse {
@@ -197,12 +202,12 @@ impl Operators {
         self.precondition_scaled(u, (scales, 1.0 / self.a0), q);
     }
 
-    /// [`Operators::precondition_components`] in the units of [`Operators::multiply_plain`].
+    /// [`Operators::precondition_components`] for displacements in units of [`unit`](Self::unit), as those of [`Operators::multiply_plain`].
     pub fn precondition_plain<S: Real>(&mut self, u: [&[S]; 2], q: [&mut [S]; 2]) {
         self.precondition_scaled(u, ([1.0; 2], self.unit / self.a0), q);
     }
 
-    /// Preconditions with these scales of a product, or by the factor `by` without an inverse.
+    /// Computes M u with these factors on the input and the output of the product. Without a circulant M is the factor `by`.
     fn precondition_scaled<S: Real>(&mut self, u: [&[S]; 2], (scales, by): ([f64; 2], f64), q: [&mut [S]; 2]) {
         match &mut self.inverse {
             Some((operator, memory)) => operator.apply_by_component(u, scales, q, memory),
@@ -226,7 +231,7 @@ impl Operators {
     }
 }
 
-/// A, or in steady rolling B.
+/// Sets up the product with A, or with B in steady rolling.
 fn product<T: Real>(
     quadrant: &Quadrant,
     grid: &Grid,

@@ -1,9 +1,9 @@
-//! Vectors of both components in the lanes of SIMD vectors, and passes over fields of them.
+//! Vectors of the plane in SIMD lanes, one lane for each element, and passes over fields of numbers.
 //!
-//! A pass processes fields of the same length, a multiple of [`LANES`]. It sums in [`LANES`] lanes, whatever the vector
-//! length of the machine. So no bit of a sum depends on the machine.
+//! A pass reads and writes fields of the same length, a multiple of [`LANES`]. It sums in [`LANES`] lanes, whatever the vector length of the machine
+//! is, so that no bit of a sum depends on the machine.
 //!
-//! Loops run over indices, because closures of array methods are not always compiled for the vector instructions of this machine.
+//! Loops use indices, because closures in array methods are not always compiled for the vector instructions of this machine.
 #![allow(clippy::needless_range_loop)]
 
 use pulp::Simd;
@@ -11,7 +11,7 @@ use pulp::Simd;
 use crate::blocks::LANES;
 use crate::lanes::{Holds, Lanes};
 
-/// Vectors of both components.
+/// The x and y components of vectors of several elements.
 pub type Pair<S> = [Lanes<S>; 2];
 
 /// `a v`.
@@ -44,13 +44,14 @@ pub fn dot<S: Simd>(v: Pair<S>, w: Pair<S>) -> Lanes<S> {
     v[0] * w[0] + v[1] * w[1]
 }
 
-/// v where the condition holds, w elsewhere.
+/// v in the lanes where the condition holds, w in the others.
 #[inline(always)]
 pub fn choose<S: Simd>(condition: Holds<S>, v: Pair<S>, w: Pair<S>) -> Pair<S> {
     [condition.choose(v[0], w[0]), condition.choose(v[1], w[1])]
 }
 
-/// One pass over some fields. The closure maps each vector of `read` and `write` to its new values and its terms of K sums.
+/// A pass over A fields that are read and B fields that are read and written. `each` gets a SIMD vector of each field. It returns the new values of
+/// the written fields, and terms of K sums. Returns these sums.
 #[inline(always)]
 pub fn pass<S: Simd, const A: usize, const B: usize, const K: usize>(
     simd: S,
@@ -66,14 +67,14 @@ pub fn pass<S: Simd, const A: usize, const B: usize, const K: usize>(
     for first in (0..length).step_by(per_lanes) {
         for lane in 0..per_lanes {
             let i = first + lane;
-            let (mut from, mut to) = ([zero; A], [zero; B]);
+            let (mut inputs, mut old_values) = ([zero; A], [zero; B]);
             for k in 0..A {
-                from[k] = Lanes::new(simd, read[k][i]);
+                inputs[k] = Lanes::new(simd, read[k][i]);
             }
             for k in 0..B {
-                to[k] = Lanes::new(simd, write[k][i]);
+                old_values[k] = Lanes::new(simd, write[k][i]);
             }
-            let (values, terms) = each(from, to);
+            let (values, terms) = each(inputs, old_values);
             for k in 0..B {
                 write[k][i] = values[k].values();
             }

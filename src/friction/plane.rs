@@ -1,14 +1,14 @@
-//! Vectors of the plane, and discs in it.
+//! Vectors of the plane, and projections onto discs.
 
 pub use crate::methods::fields::plus;
 
 /// A vector of the plane: `[x, y]`.
 pub type Vector = [f64; 2];
 
-/// Relative margin between a traction and its bound, as squares of lengths may round up.
+/// [`clip`] keeps tractions below their bounds by this relative margin, because a computed length may be rounded up.
 const MARGIN: f64 = 4.0 * f64::EPSILON;
 
-/// The nearest traction to q with `|q| <= g`, for any rounding of its length.
+/// Projects q onto the disc `|q| <= g`. The result is in the disc however its length is computed and rounded.
 pub fn clip(q: Vector, g: f64) -> Vector {
     if !(g > 0.0) {
         return [0.0; 2];
@@ -22,7 +22,7 @@ pub fn clip(q: Vector, g: f64) -> Vector {
     q
 }
 
-/// The traction of length g opposite to a slip, for any rounding of lengths.
+/// The traction of length g opposite to a slip, [clipped](clip); 0 if the slip is 0.
 pub fn against(slip: Vector, g: f64) -> Vector {
     let length = length(slip);
     if length > 0.0 {
@@ -55,7 +55,7 @@ pub fn add(v: Vector, w: Vector) -> Vector {
     [v[0] + w[0], v[1] + w[1]]
 }
 
-/// The traction nearest to q within a disc of radius g.
+/// Projects q onto the disc of radius g, up to round-off: see [`clip`].
 #[inline]
 pub fn onto_disc(q: Vector, g: f64) -> Vector {
     let squared = square(q);

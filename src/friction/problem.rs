@@ -1,15 +1,16 @@
-//! The tangential problem of one grid, and its unknowns.
+//! The tangential problem of one grid ([`Problem`]) and its unknowns ([`State`]).
 //!
 //! Find tractions q on C with
 //!
 //! ```text
-//! s = w + A q                         the slip; w is the rigid slip, minus the displacement u' before the step
+//! s = w + A q                         the slip; w is the rigid slip less u', the displacement before the step
 //! stick:  s = 0,             |q| <= g
 //! slip:   s = -lambda q,     |q| = g,     lambda >= 0
 //! outside C:                  q = 0
 //! ```
 //!
-//! It is the minimum of `1/2 q.Aq + w.q` over the discs `|q| <= g`, strictly convex: there is one solution.
+//! The solution minimises `1/2 q.Aq + w.q` over the discs `|q| <= g`. This function is strictly convex, so there is one solution. In steady rolling
+//! B of [`sweep`](super::sweep) takes the place of A.
 
 use super::beside::{count_near, extension_on};
 use super::operators::Operators;
@@ -26,23 +27,23 @@ use crate::threads::Threads;
 
 pub const FIELDS: &str = "tangential fields";
 
-/// Least weight of an element, relative to the largest, that bounds the creepages.
+/// Weights below this part of the largest one are ignored where weights bound the search for creepages.
 const LEAST_WEIGHT: f64 = 1e-6;
 
-/// The scale of residuals.
+/// The slip to which residuals are relative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// The larger of the rigid slip and the displacements: a shift, and steady rolling by a force.
+    /// The larger of the rigid slip and the displacements: for a shift, and for steady rolling with a given force.
     SlipOrDisplacement,
-    /// The rigid slip of the step: other rolling.
+    /// The rigid slip of the step, but at least the round-off of the displacements: for other rolling.
     Slip,
 }
 
-/// Round-off of displacements as a part of the scale, for slow rolling.
+/// The round-off of displacements relative to them. A residual scale is never smaller, however slowly the bodies roll.
 const ROUND_OFF: f64 = 1.5e-8;
 
 impl Scale {
-    /// The scale from the rms of both.
+    /// The scale, from the rms over C of the rigid slip and of the displacements.
     pub fn of(self, rigid: f64, displacement: f64) -> f64 {
         match self {
             Scale::SlipOrDisplacement => rigid.max(displacement),
@@ -51,59 +52,59 @@ impl Scale {
     }
 }
 
-/// The tangential problem of one grid, a box around C.
+/// The tangential problem on one grid, which is a box around C or a coarser grid of this box.
 pub struct Problem {
-    /// The box.
+    /// The grid.
     pub grid: Grid,
-    /// g, 0 outside C.
+    /// The traction bound g of each element; 0 outside C.
     pub bound: Vec<f64>,
-    /// The rigid slip without `offset`.
+    /// The rigid slip of each element, without the part of `offset`.
     pub rigid: Vec<Vector>,
-    /// w without `offset`: the rigid slip minus u'.
+    /// w of each element, the rigid slip less u', without the part of `offset`.
     pub slip: Vec<Vector>,
-    /// The creepages in w and the rigid slip, times the weights: found if forces are given.
+    /// Creepages times the length of the step. They add `weights * offset` to the rigid slip and to w. With given forces they are unknowns.
     pub offset: Vector,
-    /// The weights of the creepages at each element; empty: 1.
+    /// The weights of the creepages at each element, in x and y; empty if all are 1.
     pub weights: Vec<Vector>,
-    /// In steady rolling: the change of the slip by spin over a step.
+    /// In steady rolling: the difference, by spin, of the rigid slips at two points one step apart.
     pub ahead: Vector,
     /// The scale of residuals.
     pub scale: Scale,
-    /// A.
+    /// Products with A, or with B in steady rolling.
     pub operators: Operators,
-    /// The extension of residuals beyond C for Newton's method, made by [`Problem::continue_residuals`].
+    /// The extension of residuals beyond C for Newton's method; none before [`Problem::continue_residuals`].
     pub extension: Option<Extension<f64, 2>>,
     /// The elements of C.
     pub places: Places,
-    /// With given forces: rms over C of the rigid slip without the found creepages, the scale of its round-off.
-    pub given: f64,
-    /// rms over C of u', the displacement before the step, the scale of its round-off.
-    pub left: f64,
-    /// rms over C of the last change of q.
+    /// With given forces: rms over C of the rigid slip without `offset`. The round-off of s is relative to it if the creepages cancel this slip.
+    pub rms_given_slip: f64,
+    /// rms over C of u', the displacement before the step. The round-off of s is relative to it as well.
+    pub rms_previous: f64,
+    /// rms over C of the change of q in the last step of the iteration.
     pub update: f64,
     /// rms over C of g.
     rms_bound: f64,
 }
 
-/// Tractions and their displacements.
+/// The unknowns: tractions and their displacements.
 #[derive(Default)]
 pub struct State {
-    /// q: 0 outside C.
+    /// q of each element; 0 outside C.
     pub q: Vec<Vector>,
-    /// u = A q, exactly if `is_exact`.
+    /// u = A q, up to the accuracy that `is_exact` tells.
     pub u: Vec<Vector>,
-    /// Whether u is a product of this q in double precision.
+    /// Whether u is a product of the present q in double precision. Otherwise u was updated step by step, or computed in single precision.
     pub is_exact: bool,
 }
 
 impl State {
-    /// An undefined state: call [`State::unload`] first.
+    /// Allocates a state whose values are NaN: call [`State::unload`] before reading them.
     pub fn new(n: usize) -> Result<State> {
         let field = || blank(n, [f64::NAN; 2], FIELDS);
         Ok(State { q: field()?, u: field()?, is_exact: false })
     }
 
-    /// q = 0.
+    /// Sets q and u to 0.
     pub fn unload(&mut self, threads: &Threads) {
         let State { q, u, is_exact } = self;
         threads.for_each_row_pair((q, BLOCK), (u, BLOCK), |_, q, u| {
@@ -128,7 +129,7 @@ impl Drop for Problem {
 }
 
 impl Problem {
-    /// A problem without bounds and slips.
+    /// A problem on a grid. Its bounds and slips are NaN until the caller sets them.
     pub fn new(grid: Grid, operators: Operators) -> Result<Problem> {
         let n = grid.len();
         Ok(Problem {
@@ -143,14 +144,14 @@ impl Problem {
             extension: None,
             operators,
             places: Places::new(&grid)?,
-            given: 0.0,
-            left: 0.0,
+            rms_given_slip: 0.0,
+            rms_previous: 0.0,
             update: 0.0,
             rms_bound: 0.0,
         })
     }
 
-    /// Sets up the extension of residuals beyond C, if missing. Steady rolling has none.
+    /// Sets up the extension of residuals beyond C, unless it exists. Steady rolling has none.
     pub fn continue_residuals(&mut self) -> Result<()> {
         if self.operators.rolling.is_none() && self.extension.is_none() {
             self.extension = extension_on(&self.grid, self.threads())?;
@@ -159,29 +160,30 @@ impl Problem {
         Ok(())
     }
 
-    /// Updates C after a change of `bound`.
+    /// Recomputes the elements of C and the rms bound after a change of `bound`.
     pub fn bound_changed(&mut self) {
         count_near(&mut self.extension, &self.bound);
         self.places.contact_changed(&self.bound);
         let (threads, bound) = (self.threads(), &self.bound);
         let largest = fields::largest(threads, bound.len(), |i| bound[i]);
-        // Without friction 0/0 gives 0.
+        // If all bounds are 0, `0/0` is NaN, and `max` makes it 0.
         let [squares] = fields::sum(threads, bound.len(), |i| [(bound[i] / largest).max(0.0).powi(2)]);
         self.rms_bound = largest * (squares / self.count().max(1) as f64).sqrt();
     }
 
-    /// Whether the operators suit a grid, for tables per loaded row from that row on, and a step.
-    pub fn suits(&self, grid: &Grid, first: Option<usize>, rolling: Option<Rolling>) -> bool {
-        let own = self.operators.tangential.rows().map(RowTables::first);
-        self.grid == *grid && own == first && self.operators.step() == rolling
+    /// Whether the operators are those of a grid and of a step of steady rolling. `first_row` is the first row of the grid in tables per loaded row,
+    /// if there are such tables.
+    pub fn suits(&self, grid: &Grid, first_row: Option<usize>, rolling: Option<Rolling>) -> bool {
+        let present = self.operators.tangential.rows().map(RowTables::first);
+        self.grid == *grid && present == first_row && self.operators.step() == rolling
     }
 
-    /// The elements of C.
+    /// The indices of the elements of C.
     pub fn contact(&self) -> impl Iterator<Item = usize> + '_ {
         self.places.elements()
     }
 
-    /// The threads of this grid.
+    /// The threads that suit the size of this grid.
     pub fn threads(&self) -> &Threads {
         &self.operators.threads
     }
@@ -196,7 +198,7 @@ impl Problem {
         self.rms_bound
     }
 
-    /// The order of the displacement by tractions of the size of the bounds.
+    /// The order of magnitude of the displacement of an element by a traction of the size of the bounds.
     pub fn displaced_by_bounds(&self) -> f64 {
         self.operators.self_influence * self.rms_bound
     }
@@ -208,7 +210,7 @@ impl Problem {
         [w[0] + offset[0] + u[0], w[1] + offset[1] + u[1]]
     }
 
-    /// The slip of element i by creepages c. For a traction in place of c, it is the element's contribution to the forces.
+    /// The weights of element i times c. With creepages c it is their slip of the element, with a traction c the part of the element in the forces.
     #[inline]
     pub fn weighted(&self, i: usize, c: Vector) -> Vector {
         match self.weights.get(i) {
@@ -217,11 +219,12 @@ impl Problem {
         }
     }
 
-    /// The creepage that moves the element of the least weight by 1. Weights below [`LEAST_WEIGHT`] are ignored.
+    /// The inverse of the least absolute weight: a creepage of this size moves each element by at least 1. Weights below [`LEAST_WEIGHT`] times the
+    /// largest one are ignored.
     pub fn farthest_creepage(&self) -> f64 {
         let sizes = || self.weights.iter().flatten().map(|weight| weight.abs());
-        let most = sizes().fold(0.0, f64::max);
-        let least = sizes().filter(|weight| *weight > LEAST_WEIGHT * most).fold(most, f64::min);
+        let largest = sizes().fold(0.0, f64::max);
+        let least = sizes().filter(|weight| *weight > LEAST_WEIGHT * largest).fold(largest, f64::min);
         if least > 0.0 {
             1.0 / least
         } else {
@@ -229,12 +232,12 @@ impl Problem {
         }
     }
 
-    /// The scale of residuals, from the rms of the rigid slip and of the displacements.
+    /// The scale of residuals, from the rms of the rigid slip and of the displacements. It is at least the round-off of the slip.
     pub fn compared(&self, rigid: f64, displacement: f64) -> f64 {
-        self.scale.of(rigid, displacement).max(ROUND_OFF * self.given.max(self.left))
+        self.scale.of(rigid, displacement).max(ROUND_OFF * self.rms_given_slip.max(self.rms_previous))
     }
 
-    /// rms over C of a field.
+    /// The rms over C of a field.
     pub fn rms(&self, value: impl Fn(usize) -> Vector + Sync + Send) -> f64 {
         let squared = |i: usize| [if self.bound[i] > 0.0 { square(value(i)) } else { 0.0 }];
         let [sum] = fields::sum(self.threads(), self.bound.len(), squared);
@@ -256,19 +259,19 @@ impl Problem {
         self.rms(|i| add(self.rigid[i], self.weighted(i, self.offset)))
     }
 
-    /// Makes q feasible to the last bit, and u = A q by a fresh product.
+    /// Projects q onto the discs, so that `|q| <= g` to the last bit, and computes u = A q by a fresh product.
     pub fn refresh(&mut self, state: &mut State) {
         self.clip(state);
         self.refresh_unclipped(state);
     }
 
-    /// Makes `u = A q` by a fresh product, without change of q.
+    /// Computes `u = A q` by a fresh product, and leaves q unchanged.
     pub fn refresh_unclipped(&mut self, state: &mut State) {
         self.operators.multiply(&state.q, self.rms_bound, &mut state.u);
         state.is_exact = true;
     }
 
-    /// [`Problem::refresh`], in single precision if that suffices for the tolerance.
+    /// [`Problem::refresh`], in single precision if its round-off is below the tolerance.
     pub fn refresh_to(&mut self, state: &mut State, tolerance: f64) {
         if tolerance < f32::ROUND_OFF {
             return self.refresh(state);
@@ -283,7 +286,7 @@ impl Problem {
         fields::map(threads, &mut state.q, |i, q| clip(q, bound[i]));
     }
 
-    /// Products since the last call.
+    /// Returns the number of products since the last call of this function.
     pub fn take_products(&mut self) -> u64 {
         std::mem::take(&mut self.operators.products)
     }

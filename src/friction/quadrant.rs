@@ -1,6 +1,6 @@
-//! Coefficients at whole offsets of one quadrant, computed once for all operators of a box, and for those of the coarser grids.
+//! The coefficients at whole offsets `kx, ky >= 0`, computed once for all operators of a box and, if possible, of its coarser grids.
 //!
-//! Coefficients are homogeneous: elements twice as long and twice as wide have twice the coefficient at the same offset in elements.
+//! Coefficients of half-spaces are homogeneous: elements twice as long and twice as wide have twice the coefficient at the same offset in elements.
 
 use toeplitz::vector_period;
 
@@ -12,15 +12,17 @@ use crate::threads::Threads;
 
 /// `Axx, Ayy, Axy` at the offsets `0..cx` by `0..cy`.
 pub struct Quadrant {
+    /// The source of the coefficients, for other offsets.
     tangential: Tangential,
     cx: usize,
     cy: usize,
+    /// `[cy][cx]`.
     values: Vec<Entry>,
 }
 
 impl Quadrant {
-    /// The coefficients for the operators of a grid: offsets between its elements for products, one more for preconditioners, and `by` more for
-    /// rolling by whole elements within the grid.
+    /// Computes the coefficients for the operators of a grid: those at the offsets between its elements for products, at one offset more for
+    /// preconditioners, and at `by` more if a step of rolling is of whole elements.
     pub fn new(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Quadrant> {
         let (cx, cy) = reach(tangential, grid, by);
         let mut values: Vec<Entry> = blank(cx * cy, [f64::NAN; 3], "the tangential influence coefficients")?;
@@ -28,7 +30,7 @@ impl Quadrant {
         Ok(Quadrant { tangential: tangential.clone(), cx, cy, values })
     }
 
-    /// The coefficients of a coarser grid.
+    /// The coefficients of a coarser grid: these times a factor if they are homogeneous, otherwise computed anew.
     pub fn coarser(self, tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Quadrant> {
         let (cx, cy) = reach(tangential, grid, by);
         match tangential.times(&self.tangential) {
@@ -51,30 +53,30 @@ impl Quadrant {
         &self.tangential
     }
 
-    /// Whether there is no Axy between the elements of a grid, for displacements at `by` from the centres.
+    /// Whether Axy is 0 between all elements of a grid, for displacements at the offset `by` from the centres.
     pub fn is_uncoupled(&self, grid: &Grid, by: (f64, f64)) -> bool {
         if self.tangential.is_own() {
             return self.values.iter().all(|entry| entry[2] == 0.0);
         }
-        // On a line Axy is 0, also for steps along it.
+        // On a single row or column Axy is 0, also for steps along it.
         let along_line = (grid.my == 1 && by.1 == 0.0) || (grid.mx == 1 && by.0 == 0.0);
         along_line || self.tangential.is_uncoupled()
     }
 
-    /// The coefficients at a whole offset.
+    /// The coefficients at a whole offset of any sign.
     #[inline]
     pub fn at(&self, x: i64, y: i64) -> Entry {
         let [xx, yy, xy] = self.values[y.unsigned_abs() as usize * self.cx + x.unsigned_abs() as usize];
         [xx, yy, if (x < 0) == (y < 0) { xy } else { -xy }]
     }
 
-    /// Axx (component 0), Ayy (1) or Axy (2) at the offsets `(0.., ky)`.
+    /// Writes Axx (component 0), Ayy (1) or Axy (2) at the offsets `(0.., ky)`.
     pub fn fill_row(&self, component: usize, ky: i64, out: &mut [f64]) {
         let row = &self.values[ky as usize * self.cx..][..out.len()];
         out.iter_mut().zip(row).for_each(|(value, entry)| *value = entry[component]);
     }
 
-    /// The coefficients `by` elements further on, computed anew if not at whole offsets within reach.
+    /// The coefficients at the offset `(x, y) + by`. They are computed unless this is a whole offset that is stored.
     pub fn displaced(&self, x: i64, y: i64, by: (f64, f64)) -> Entry {
         let (at_x, at_y) = (x as f64 + by.0, y as f64 + by.1);
         let is_kept =
@@ -87,19 +89,20 @@ impl Quadrant {
     }
 }
 
-/// The period of the circulant that approximates A, at least an element longer than the grid, and the number of offsets
-/// up to half of it; one offset for a single row or column.
+/// The period of the circulant that approximates A, and the number of its offsets >= 0, both in x and y. The period is at least an element longer
+/// than the grid, and has offsets up to a half of it. A direction with one element has one offset.
 pub fn circulant_period(grid: &Grid) -> ((usize, usize), (usize, usize)) {
     let (px, py) = vector_period((grid.mx + 1, grid.my + 1));
-    let given = |m: usize, period: usize| if m == 1 { 1 } else { period / 2 + 1 };
-    ((px, py), (given(grid.mx, px), given(grid.my, py)))
+    let offsets = |m: usize, period: usize| if m == 1 { 1 } else { period / 2 + 1 };
+    ((px, py), (offsets(grid.mx, px), offsets(grid.my, py)))
 }
 
-/// The number of kept offsets in each direction. A step adds offsets if it is of whole elements, and within the grid or of own tables.
+/// The number of stored offsets in each direction. A step of whole elements adds offsets if it is at most as long as the grid, or if the coefficients
+/// are the caller's tables.
 fn reach(tangential: &Tangential, grid: &Grid, by: (f64, f64)) -> (usize, usize) {
     let is_whole = by.0.fract() == 0.0 && by.1.fract() == 0.0;
     let is_short = by.0.abs() <= grid.mx as f64 && by.1.abs() <= grid.my as f64;
     let (in_x, in_y) = if is_whole && (is_short || tangential.is_own()) { by } else { (0.0, 0.0) };
-    let (_, (given_x, given_y)) = circulant_period(grid);
-    ((grid.mx + 1 + in_x.abs() as usize).max(given_x), (grid.my + 1 + in_y.abs() as usize).max(given_y))
+    let (_, (circulant_x, circulant_y)) = circulant_period(grid);
+    ((grid.mx + 1 + in_x.abs() as usize).max(circulant_x), (grid.my + 1 + in_y.abs() as usize).max(circulant_y))
 }

@@ -1,4 +1,4 @@
-//! The result of a solve, on the whole grid.
+//! Writes the result of a solve: fields on the whole grid, in the caller's units, and the report.
 
 use super::certificate::is_on_circle;
 use super::forces::Forces;
@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::sums::in_blocks;
 
 impl Solver {
-    /// Writes the result on the whole grid, and the report.
+    /// Writes the fields of the solution, and forces, moment, creepages and counts of the report.
     pub(super) fn write(&mut self, request: &Request<'_>, report: &mut Report) {
         let Request { pressure, friction, .. } = *request;
         let Solution { traction, slip, stick_slip, .. } = &mut self.solution;
@@ -20,17 +20,17 @@ impl Solver {
         let distance = friction.distance(&grid);
         let mut offset = [0.0; 2];
         if let (Some(window), Some(Level { problem, state, .. })) = (&self.window, self.levels.first()) {
-            offset = scales.own_displacement(problem.offset);
+            offset = scales.callers_displacement(problem.offset);
             self.offset = offset;
-            // The elements in contact of a row.
+            // The elements of a row that carry pressure: their indices in the box, and their columns.
             let touching = |iy: usize| window.columns(iy).filter(move |(_, ix)| pressure[iy * grid.mx + ix] > 0.0);
             threads.for_each_row_pair((traction, grid.mx), (slip, grid.mx), |iy, traction, slip| {
                 traction.fill([0.0; 2]);
                 slip.fill([0.0; 2]);
                 for (k, ix) in touching(iy) {
-                    slip[ix] = scales.own_displacement(problem.slip_at(k, &state.u));
+                    slip[ix] = scales.callers_displacement(problem.slip_at(k, &state.u));
                     traction[ix] = if problem.bound[k] > 0.0 {
-                        scales.own_traction(state.q[k])
+                        scales.callers_traction(state.q[k])
                     } else {
                         against(slip[ix], request.bound(iy * grid.mx + ix))
                     };
@@ -40,7 +40,7 @@ impl Solver {
                 stick_slip.fill(EXTERIOR);
                 for (k, ix) in touching(iy) {
                     let i = iy * grid.mx + ix;
-                    // A bound that was dropped beside larger ones is 0.
+                    // A negligible bound was solved as 0, so that q = 0 is on its circle. Such an element sticks if its slip is 0.
                     let rests = problem.bound[k] == 0.0 && request.bound(i) > 0.0 && slip[i] == [0.0; 2];
                     stick_slip[ix] = if is_on_circle(state.q[k], problem.bound[k]) && !rests { SLIP } else { STICK };
                 }
@@ -67,7 +67,7 @@ impl Solver {
         (report.force, report.moment) = resultant(&grid, &threads, friction.spin_centre, tractions, &mut self.sums);
     }
 
-    /// See [`Report::missing`].
+    /// The error of given forces relative to mu N: see [`Report::missing`].
     pub(super) fn missing(&self, friction: &Friction<'_>, report: &Report) -> f64 {
         if report.carried > 0.0 {
             length(self.excess(friction, report)) / report.carried
@@ -76,9 +76,9 @@ impl Solver {
         }
     }
 
-    /// The excess of the last result's weighted forces over the given ones.
+    /// The forces of the last result less the given ones; 0 in directions with a given creepage. With weights forces are sums of weighted tractions.
     pub fn excess(&self, friction: &Friction<'_>, report: &Report) -> Vector {
-        let carried = |k: usize| match friction.weights {
+        let force = |k: usize| match friction.weights {
             None => report.force[k],
             Some(weights) => {
                 let terms = self.solution.traction.iter().zip(weights[k]).map(|(q, weight)| weight * q[k]);
@@ -86,12 +86,13 @@ impl Solver {
             }
         };
         [0, 1].map(|k| match friction.prescribed[k] {
-            Prescribed::Force(force) => carried(k) - force,
+            Prescribed::Force(given) => force(k) - given,
             Prescribed::Creepage(_) => 0.0,
         })
     }
 
-    /// The largest part of a request's forces that its pressures carry; above 1 if they carry the forces with room to spare.
+    /// The largest factor by which the given forces can be multiplied so that tractions within the bounds still carry them. Below 1 the
+    /// bounds do not carry the forces.
     pub fn part_in_reach(&self, request: &Request<'_>) -> Result<f64> {
         let limits = self.limits_before(request)?;
         let request = Request { limits: &limits, ..*request };

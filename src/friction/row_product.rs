@@ -1,6 +1,6 @@
-//! Products with [one table per loaded row](super::row_tables): A is Toeplitz in x only.
+//! Products with [one table per loaded row](super::row_tables), for which A is Toeplitz in x only.
 //!
-//! Both components are rows of one grid, those of x before those of y: a traction of either is a loaded row, and so is its displacement.
+//! The product is that of a grid with twice as many rows: the first my rows hold the x components of a field, the others the y components.
 
 use toeplitz::fft::{good_length, Real};
 use toeplitz::{Memory, OfRows, Product};
@@ -13,12 +13,13 @@ use crate::grid::Grid;
 use crate::memory::{blank, keep};
 use crate::threads::Threads;
 
-/// The operator of one grid, with its workspace.
+/// The operator of one grid, with its memory.
 pub struct RowProduct {
     product: Product<f64>,
     memory: Memory<f64>,
-    /// `[2][my][mx]`: tractions and displacements.
+    /// Tractions by component, `[2][my][mx]`.
     q: Vec<f64>,
+    /// Displacements by component, `[2][my][mx]`.
     u: Vec<f64>,
 }
 
@@ -29,7 +30,7 @@ impl Drop for RowProduct {
 }
 
 impl RowProduct {
-    /// The product with displacements at `by` elements from each centre along x; A if `by` is 0.
+    /// The product for displacements `by` elements from each centre along x. It is that with A if `by` is 0.
     pub fn displaced(
         tangential: &Tangential,
         rows: &RowTables,
@@ -41,7 +42,7 @@ impl RowProduct {
         RowProduct::new(|jy, iy, kx| with_layer(rows, layer, (jy, iy, kx + by)), grid, threads)
     }
 
-    /// The product with displacements at each centre less those at `by` elements from it along x: steady rolling.
+    /// The product of steady rolling: displacements at each centre less those `by` elements from it along x.
     pub fn rolling(
         tangential: &Tangential,
         rows: &RowTables,
@@ -58,6 +59,7 @@ impl RowProduct {
         RowProduct::new(entry, grid, threads)
     }
 
+    /// Sets up the product with the coefficients `entry(loaded row, row, offset in x)`.
     fn new(
         entry: impl Fn(usize, usize, i64) -> Full + Sync + Send,
         grid: &Grid,
@@ -66,14 +68,14 @@ impl RowProduct {
         let Grid { mx, my, .. } = *grid;
         let last = mx as i64 - 1;
         let fill = |from: usize, to: usize, period: &mut [f64]| {
-            // Rows: displacement in x, in y; columns: traction in x, in y.
+            // The index in xx, yy, xy, yx. Rows of this matrix: displacement in x, in y; columns: traction in x, in y.
             let component = [[0, 2], [3, 1]][to / my][from / my];
             let px = period.len() as i64;
             period.fill(0.0);
             (-last..=last).for_each(|kx| period[kx.rem_euclid(px) as usize] = entry(from % my, to % my, kx)[component]);
         };
-        let of = OfRows { are_even: false, fill, factor: 1.0 };
-        let product = Product::per_row((mx, 2 * my), &of, good_length(2 * mx - 1), threads)?;
+        let coefficients = OfRows { are_even: false, fill, factor: 1.0 };
+        let product = Product::per_row((mx, 2 * my), &coefficients, good_length(2 * mx - 1), threads)?;
         let (memory, what) = (product.memory()?, "the fields of tangential tables per row");
         let field = || blank(2 * mx * my, f64::NAN, what);
         Ok(RowProduct { product, memory, q: field()?, u: field()? })
@@ -81,23 +83,23 @@ impl RowProduct {
 
     /// `u = A q`.
     pub fn apply(&mut self, q: &[Vector], u: &mut [Vector]) {
-        for (component, own) in self.q.chunks_exact_mut(q.len()).enumerate() {
-            own.iter_mut().zip(q).for_each(|(own, q)| *own = q[component]);
+        for (component, values) in self.q.chunks_exact_mut(q.len()).enumerate() {
+            values.iter_mut().zip(q).for_each(|(value, q)| *value = q[component]);
         }
         self.product.apply(&self.q, &mut self.u, &mut self.memory);
-        for (component, own) in self.u.chunks_exact(u.len()).enumerate() {
-            u.iter_mut().zip(own).for_each(|(u, own)| u[component] = *own);
+        for (component, values) in self.u.chunks_exact(u.len()).enumerate() {
+            u.iter_mut().zip(values).for_each(|(u, value)| u[component] = *value);
         }
     }
 
-    /// `u = by A q` of fields by component, in any precision.
-    pub fn apply_by_component<S: Real>(&mut self, q: [&[S]; 2], by: f64, u: [&mut [S]; 2]) {
-        for (own, q) in self.q.chunks_exact_mut(q[0].len()).zip(q) {
-            own.iter_mut().zip(q).for_each(|(own, q)| *own = by * q.to_double());
+    /// `u = factor A q` for fields by component, in any precision.
+    pub fn apply_by_component<S: Real>(&mut self, q: [&[S]; 2], factor: f64, u: [&mut [S]; 2]) {
+        for (values, q) in self.q.chunks_exact_mut(q[0].len()).zip(q) {
+            values.iter_mut().zip(q).for_each(|(value, q)| *value = factor * q.to_double());
         }
         self.product.apply(&self.q, &mut self.u, &mut self.memory);
-        for (own, u) in self.u.chunks_exact(u[0].len()).zip(u) {
-            u.iter_mut().zip(own).for_each(|(u, own)| *u = S::of(*own));
+        for (values, u) in self.u.chunks_exact(u[0].len()).zip(u) {
+            u.iter_mut().zip(values).for_each(|(u, value)| *u = S::of(*value));
         }
     }
 
@@ -108,7 +110,8 @@ impl RowProduct {
     }
 }
 
-/// The coefficients with a layer between the bodies, which displaces each element by its own traction.
+/// The coefficients of a loaded row, a row and an offset in x, with a layer between the bodies, which adds to the coefficient of an element on
+/// itself.
 fn with_layer(rows: &RowTables, layer: f64, (jy, iy, kx): (usize, usize, i64)) -> Full {
     let [xx, yy, xy, yx] = rows.at(jy, iy, kx);
     let layer = if jy == iy && kx == 0 { layer } else { 0.0 };

@@ -1,4 +1,4 @@
-//! The caller's tangential coefficients, one table per loaded row.
+//! The caller's tangential influence coefficients, one table per loaded row.
 //!
 //! On a coarser grid the coefficient is the mean displacement of the fine elements of one coarse element by a unit traction on the fine
 //! elements of another. In x it is computed as for [`Tables`], in y as for [the normal ones](crate::influence::RowTables). A preconditioner uses the
@@ -14,40 +14,43 @@ use crate::memory::zeros;
 
 pub const TABLES: &str = "the tangential influence coefficients";
 
-/// `xx, yy, xy, yx`: xy is the displacement in x by a traction in y.
+/// The coefficients of one offset, `[xx, yy, xy, yx]`: xy is the displacement in x by a traction in y.
 pub type Full = [f64; 4];
 
-/// The tables of all rows, or of a run of rows.
+/// The tables, for a run of consecutive rows of the grid.
 #[derive(Clone, Debug)]
 pub struct RowTables {
-    /// The tables hold offsets below this.
+    /// The tables have the offsets in x below this number.
     cx: usize,
-    /// The number of all rows.
-    of_all: usize,
-    /// `[jy][iy][2 cx - 1]`: loaded row, row, offsets from `1 - cx` on.
+    /// The number of all rows of the tables.
+    all_rows: usize,
+    /// `[jy][iy][2 cx - 1]`: loaded row, row, offset in x from `1 - cx` on.
     values: Arc<Vec<Full>>,
-    /// Their common factor: a power of two.
+    /// A power of two, by which stored coefficients are multiplied.
     factor: f64,
+    /// The first row of the run.
     first: usize,
+    /// The number of rows of the run.
     rows: usize,
 }
 
 impl RowTables {
-    /// The coefficients of checked tables.
+    /// Copies the caller's tables, which have been checked.
     pub fn new(influence: &TangentialInfluence<'_>) -> Result<RowTables> {
         RowTables::of(influence.cx, influence.cy, |jy, iy, kx| influence.of_rows(jy, iy, kx))
     }
 
+    /// Tables of all rows with the coefficients `at(jy, iy, kx)`.
     fn of(cx: usize, rows: usize, at: impl Fn(usize, usize, i64) -> Full) -> Result<RowTables> {
         let width = 2 * cx - 1;
         let mut values: Vec<Full> = zeros(rows * rows * width, TABLES)?;
         for (k, row) in values.chunks_exact_mut(width).enumerate() {
             row.iter_mut().zip(1 - cx as i64..).for_each(|(entry, kx)| *entry = at(k / rows, k % rows, kx));
         }
-        Ok(RowTables { cx, of_all: rows, values: Arc::new(values), factor: 1.0, first: 0, rows })
+        Ok(RowTables { cx, all_rows: rows, values: Arc::new(values), factor: 1.0, first: 0, rows })
     }
 
-    /// The tables in units of `unit`.
+    /// The tables divided by `unit`.
     pub fn in_units_of(&self, unit: f64) -> RowTables {
         RowTables { factor: self.factor / unit, ..self.clone() }
     }
@@ -62,10 +65,11 @@ impl RowTables {
         self.first
     }
 
-    /// The coefficients of a loaded row jy and a row iy at an integer offset in x. Beyond the tables, the outermost coefficient is used.
+    /// The coefficients of the loaded row jy and the row iy, both counted from the first row of the run, at an offset in x. Beyond the tables the
+    /// outermost coefficients are used.
     pub fn at(&self, jy: usize, iy: usize, kx: i64) -> Full {
         let last = self.cx as i64 - 1;
-        let row = (self.first + jy) * self.of_all + self.first + iy;
+        let row = (self.first + jy) * self.all_rows + self.first + iy;
         let column = (kx.clamp(-last, last) + last) as usize;
         self.values[row * (2 * self.cx - 1) + column].map(|value| self.factor * value)
     }
@@ -95,15 +99,16 @@ impl RowTables {
         })
     }
 
-    /// The mean over the rows at each offset and its mirrored offsets. xx and yy are even in both directions, xy is odd in both.
+    /// One table for all rows: the mean of the coefficients over the rows of the run, over xy and yx, and over an offset and its mirror images. Its
+    /// xx and yy are even in both directions, its xy is odd in both.
     pub fn mean(&self) -> Result<Tables> {
         Tables::of(self.cx, self.rows, |x, y| {
             let (mut sum, mut count) = ([0.0; 3], 0);
             for jy in 0..self.rows - y as usize {
                 let iy = jy + y as usize;
-                let mirrored = [(self.at(jy, iy, x), 1.0), (self.at(iy, jy, -x), 1.0)];
-                let turned = [(self.at(jy, iy, -x), -1.0), (self.at(iy, jy, x), -1.0)];
-                for ([xx, yy, xy, yx], sign) in mirrored.into_iter().chain(turned) {
+                let same_sign = [(self.at(jy, iy, x), 1.0), (self.at(iy, jy, -x), 1.0)];
+                let opposite_sign = [(self.at(jy, iy, -x), -1.0), (self.at(iy, jy, x), -1.0)];
+                for ([xx, yy, xy, yx], sign) in same_sign.into_iter().chain(opposite_sign) {
                     sum = [sum[0] + xx, sum[1] + yy, sum[2] + 0.5 * sign * (xy + yx)];
                 }
                 count += 4;

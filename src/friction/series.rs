@@ -1,25 +1,28 @@
-//! The series of tangential coefficients far from an element: polynomials in `t = (X/r)^2` for each power of `z = (d/r)^2`.
+//! The series of the integrals a and b of [`half_space`](super::half_space) far from an element: a polynomial in `t = (X/r)^2` for each power of
+//! `z = (d/r)^2`, where d is half of the element's diagonal.
 
 use crate::influence::MOST_TERMS;
 
-/// Polynomials `p_k(t) = sum_j series[k][j] t^j`.
+/// The polynomials `p_k(t) = sum_j series[k][j] t^j` of the series `dx dy/r sum_k z^k p_k(t)`.
 pub type Series = [[f64; MOST_TERMS + 2]; MOST_TERMS + 1];
 
-/// The series of a and b, which depend on the ratio dx/dy only.
+/// The series of a and b for elements of one shape: they depend on the ratio dx/dy only.
 #[derive(Debug)]
 pub struct Shape {
+    /// The series of `a`, the integral of `y^2/r^3`.
     pub a: Series,
+    /// The series of `b`, the integral of `x^2/r^3`.
     pub b: Series,
 }
 
 impl Shape {
-    /// The series of elements `dx` by `dy`.
+    /// Computes the series of elements `dx` by `dy`.
     pub fn new(dx: f64, dy: f64) -> Shape {
         Shape { a: series(dx, dy, [1.0, 0.0, 0.0]), b: series(dx, dy, [0.0, 0.0, 1.0]) }
     }
 }
 
-/// A homogeneous polynomial `sum_p c[p] X^p Y^(degree - p)` over `r^power`.
+/// The function `N(X, Y)/r^power` with the homogeneous polynomial `N = sum_p coefficients[p] X^p Y^(degree - p)`.
 #[derive(Clone)]
 struct Fraction {
     coefficients: Vec<f64>,
@@ -27,7 +30,7 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// `d/dX (N/r^m) = (N_X r^2 - m X N)/r^(m + 2)`, or the same in Y.
+    /// The derivative by X, `(N_X r^2 - m X N)/r^(m + 2)` with m the power, or the derivative by Y likewise.
     fn derivative(&self, in_x: bool) -> Fraction {
         let degree = self.coefficients.len() - 1;
         let mut coefficients = vec![0.0; degree + 2];
@@ -44,9 +47,9 @@ impl Fraction {
     }
 }
 
-/// The polynomials of the mean over the element of `N(X, Y)/r^3`, N of degree 2: the sum of
-/// `hx^(2i) hy^(2j)/((2i + 1)! (2j + 1)!)` times the derivatives of order 2i in X and 2j in Y, half-widths in units of the
-/// half-diagonal.
+/// The series of the mean over the element of `N(X, Y)/r^3`, N of degree 2 with these coefficients. By Taylor's expansion the mean is the sum of
+/// `hx^(2i) hy^(2j)/((2i + 1)! (2j + 1)!)` times the derivatives of order 2i in X and 2j in Y. hx and hy are half of the sides, in units of half of
+/// the diagonal.
 fn series(dx: f64, dy: f64, numerator: [f64; 3]) -> Series {
     let diagonal = dx.hypot(dy);
     let moment = |h: f64, i: usize| (2..=2 * i + 1).fold(h.powi(2 * i as i32), |m, k| m / k as f64);
@@ -64,7 +67,7 @@ fn series(dx: f64, dy: f64, numerator: [f64; 3]) -> Series {
     series
 }
 
-/// Adds `factor sum_p c[p] X^p Y^(2m - p)`, p even, as a polynomial in `t = X^2 = 1 - Y^2`.
+/// Adds `factor sum_p coefficients[p] X^p Y^(2m - p)`, p even, on the circle r = 1, as a polynomial in `t = X^2 = 1 - Y^2`.
 fn add_in_t(coefficients: &[f64], factor: f64, polynomial: &mut [f64]) {
     let m = (coefficients.len() - 1) / 2;
     for half in 0..=m {

@@ -1,4 +1,4 @@
-//! The solve of a tangential problem: the box around C, the rigid slip, nested iteration, hand-over, the result.
+//! The solve of a tangential problem: finds the box around C, sets up its operators, iterates, and writes the result.
 
 use super::certificate::Certificate;
 use super::displaced::Displaced;
@@ -20,39 +20,41 @@ use crate::progress::Outcome;
 use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
-/// Residual above which a start is discarded for one from the coarser grids.
+/// A guess with a larger residual, or that misses more of the given forces, is discarded for a start from the coarser grids.
 const LARGEST_USEFUL: f64 = 0.1;
 
-/// Solves tangential problems on one grid. Keeps the operators of the box around C and the tractions for the next solve.
+/// Solves tangential problems on one grid. It keeps the operators of the box around C and the last result for the next solve.
 pub struct Solver {
     pub(super) grid: Grid,
+    /// The coefficients, in the caller's units.
     pub(super) tangential: Tangential,
-    /// Units of the iterations, and the coefficients in them.
     pub(super) scales: Scales,
+    /// The coefficients in the units of the iterations.
     pub(super) scaled: Tangential,
     single: bool,
     pub(super) threads: Threads,
-    /// The grids of the box, the finest first. Empty before the first solve.
+    /// The box around C and its coarser grids, the finest first. Empty before the first solve.
     pub(super) levels: Vec<Level>,
-    /// The product at places between the centres, for steps of rolling.
+    /// The product at points between the centres, for steps of transient rolling.
     pub(super) displaced: Option<Displaced>,
+    /// The last result.
     pub(super) solution: Solution,
-    /// The tractions before the step, where they were kept.
+    /// The tractions of the step before, if the friction continues from them.
     pub(super) before: Vec<Vector>,
-    /// The state of the particles before the step, where it was kept.
+    /// The state of the particles after the step before, if the friction continues from it.
     pub(super) particles_before: Vec<Particle>,
-    /// The creepages found, times the length rolled.
+    /// The creepages found for given forces, times the length of the step.
     pub(super) offset: Vector,
     pub(super) has_solution: bool,
-    /// Whether the last solve had friction.
-    pub(super) is_last: bool,
-    /// The box of the last solve.
+    /// Whether the last solve had friction. If not, `solution` belongs to an earlier one.
+    pub(super) had_friction: bool,
+    /// The box around C of the last solve; none if no element was in contact.
     pub(super) window: Option<Rectangle>,
-    /// Scratch: the sums of each row of a result.
+    /// Scratch: sums over each row of the grid.
     pub(super) sums: Vec<[f64; 3]>,
 }
 
-/// The quality of a start.
+/// What is known of a guess: its certificate, whether it meets the tolerance, whether to iterate from it, and the products so far.
 struct StartQuality {
     certificate: Certificate,
     is_solution: bool,
@@ -69,7 +71,7 @@ impl Drop for Solver {
 }
 
 impl Solver {
-    /// A solver of one grid and one pair of bodies. `single`: whether products of directions may be in single precision.
+    /// A solver for one grid and one pair of bodies. `single` tells whether products of search directions may be in single precision.
     pub fn new(grid: Grid, tangential: Tangential, single: bool, threads: &Threads) -> Solver {
         let (scales, scaled) = Scales::of(&grid, &tangential);
         Solver {
@@ -86,23 +88,23 @@ impl Solver {
             particles_before: Vec::new(),
             offset: [0.0; 2],
             has_solution: false,
-            is_last: true,
+            had_friction: true,
             window: None,
             sums: Vec::new(),
         }
     }
 
-    /// The coefficients.
+    /// The influence coefficients, in the caller's units.
     pub fn tangential(&self) -> &Tangential {
         &self.tangential
     }
 
-    /// The last result; none if the last solve had no friction.
+    /// The result of the last solve; none if that solve had no friction.
     pub fn solution(&self) -> Option<&Solution> {
-        (self.has_solution && self.is_last).then_some(&self.solution)
+        (self.has_solution && self.had_friction).then_some(&self.solution)
     }
 
-    /// The last result, or an empty one.
+    /// Ends the solver and returns its last result, or empty fields if there is none.
     pub fn into_solution(mut self) -> Solution {
         if self.has_solution {
             std::mem::take(&mut self.solution)
@@ -111,7 +113,7 @@ impl Solver {
         }
     }
 
-    /// The creepages of the last result where its forces were given, times the length rolled.
+    /// The creepages that the last solve found for given forces, times the length of the step.
     pub fn offset(&self) -> Vector {
         self.offset
     }
@@ -125,7 +127,7 @@ impl Solver {
         self.levels.iter().map(Level::bytes).sum::<usize>() + displaced + fields
     }
 
-    /// Solves. `watch(grid, residual)` is called at each iteration; false cancels.
+    /// Solves the tangential problem and keeps the result. `watch(grid, residual)` is called at each iteration; it returns false to cancel.
     pub fn solve(
         &mut self,
         request: &Request<'_>,
@@ -146,8 +148,7 @@ impl Solver {
             _ => Forces::of(friction, &self.grid, bound)?,
         };
         if !request.start.is_again() {
-            // Products of a step that was refused do not count.
-            self.take_products();
+            self.take_products(); // Those of a step that was refused do not count.
             if keeps {
                 self.keep_tractions()?;
                 self.keep_particles();
@@ -157,8 +158,9 @@ impl Solver {
         let from_rest =
             friction.previous == Previous::None || (0..self.grid.len()).all(|i| before(friction, kept, i) == [0.0; 2]);
         let rolling = self.steady_rolling(friction);
-        let counts = |i: usize| pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2];
-        let window = Rectangle::around(&self.grid, &self.threads, |mut elements| elements.any(counts));
+        // Except in steady rolling elements with a previous traction are inside, too.
+        let is_inside = |i: usize| pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2];
+        let window = Rectangle::around(&self.grid, &self.threads, |mut elements| elements.any(is_inside));
         let (mut end, mut is_lowered) = (Outcome::Converged, false);
         let mut report = Report { from_rest, ..Report::default() };
         if let Some(window) = &window {
@@ -167,7 +169,7 @@ impl Solver {
             (end, is_lowered) = self.solve_within_reach((window, rolling), request, forces, watch, &mut report)?;
         }
         self.window = window;
-        // Derivatives come before the result is written, so that a failure leaves the last result.
+        // The derivatives are computed before the result is written, so that a failure leaves the result of the solve before.
         if friction.sensitivities && end != Outcome::Cancelled {
             report.sensitivities = self.sensitivities(friction, watch)?;
             end = if report.sensitivities.is_some() { end } else { Outcome::Cancelled };
@@ -180,12 +182,12 @@ impl Solver {
         }
         self.write_particles(march);
         report.missing = self.missing(friction, &report);
-        (self.has_solution, self.is_last) = (true, true);
+        (self.has_solution, self.had_friction) = (true, true);
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
     }
 
-    /// The step of steady rolling, in the solver's units.
+    /// The step of steady rolling in the units of the iterations; none for other motions.
     fn steady_rolling(&self, friction: &Friction<'_>) -> Option<Rolling> {
         (friction.motion == Motion::SteadyRolling).then(|| Rolling {
             distance: self.scales.length(friction.distance(&self.grid)),
@@ -193,7 +195,7 @@ impl Solver {
         })
     }
 
-    /// Solves in a window, in the solver's units. Writes the certificate and the products to the report.
+    /// Solves in a box, in the units of the iterations. Writes the certificate, the last change of q and the products to the report.
     pub(super) fn solve_in(
         &mut self,
         (window, rolling): (&Rectangle, Option<Rolling>),
@@ -204,58 +206,59 @@ impl Solver {
     ) -> Result<Outcome> {
         let from_rest = report.from_rest;
         self.set_up(window, rolling)?;
-        let mut had_slip = self.begin(request, from_rest, window)?;
+        let mut mostly_slips = self.begin(request, from_rest, window)?;
         if request.friction.has_law() {
             let nested = from_rest && !request.start.is_again();
-            let end = self.iterate_with_law(request, (window, forces, (nested, had_slip)), watch, report)?;
-            [report.update, _] = self.scales.own_traction([self.levels[0].problem.update, 0.0]);
+            let end = self.iterate_with_law(request, (window, forces, (nested, mostly_slips)), watch, report)?;
+            [report.update, _] = self.scales.callers_traction([self.levels[0].problem.update, 0.0]);
             return Ok(end);
         }
         let mut is_useful = false;
         if request.start.is_guess() {
-            let near = self.assess_start(forces, request.tolerance);
-            (report.products, report.certificate) = (near.products, near.certificate);
-            if near.is_solution {
+            let guess = self.assess_start(forces, request.tolerance);
+            (report.products, report.certificate) = (guess.products, guess.certificate);
+            if guess.is_solution {
                 return Ok(Outcome::Converged);
             }
-            is_useful = near.is_useful;
+            is_useful = guess.is_useful;
             if !is_useful {
-                had_slip = self.begin(&Request { start: Start::Before, ..*request }, from_rest, window)?;
+                mostly_slips = self.begin(&Request { start: Start::Before, ..*request }, from_rest, window)?;
             }
         }
         let nested = from_rest && !is_useful && !request.start.is_again();
         let end = match request.is_cancelled {
             true => Outcome::Cancelled,
-            false => self.iterate(request, forces, (nested, had_slip), watch, report)?,
+            false => self.iterate(request, forces, (nested, mostly_slips), watch, report)?,
         };
         let Level { problem, state, .. } = &self.levels[0];
         report.certificate = Certificate::of(problem, state);
-        [report.update, _] = self.scales.own_traction([problem.update, 0.0]);
+        [report.update, _] = self.scales.callers_traction([problem.update, 0.0]);
         Ok(end)
     }
 
-    /// Iterates on the grids of the window, from the state of the finest. Writes products and creepages to the report.
+    /// Iterates from the present state, or from the coarsest grid if `nested`. Adds products and the coarser result, if wanted, to the report.
     pub(super) fn iterate(
         &mut self,
         request: &Request<'_>,
         forces: Forces,
-        (nested, had_slip): (bool, bool),
+        (nested, mostly_slips): (bool, bool),
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {
         let scales = self.scales;
-        let watch = &mut |grid: &Grid, residual: f64| watch(&scales.own_grid(grid), residual);
-        let compared = nested && request.estimates && request.friction.motion == Motion::SteadyRolling;
-        let coarse = if compared { COUNTED_TOLERANCE } else { COARSE_TOLERANCE };
+        let watch = &mut |grid: &Grid, residual: f64| watch(&scales.callers_grid(grid), residual);
+        let keeps_coarser = nested && request.estimates && request.friction.motion == Motion::SteadyRolling;
+        let coarse = if keeps_coarser { COUNTED_TOLERANCE } else { COARSE_TOLERANCE };
         let mut work = Work { products: 0.0, limit: request.limit, coarse, watch };
-        let end = nested::solve(&mut self.levels, forces, (nested, had_slip), request.tolerance, &mut work)?;
+        let end = nested::solve(&mut self.levels, forces, (nested, mostly_slips), request.tolerance, &mut work)?;
         report.products += work.products;
-        let own = |(force, creepage)| (scales.own_force(force), scales.own_creepage(creepage));
-        report.coarser = self.levels.get(1).filter(|_| compared).map(|level| own(level.found()));
+        let converted = |(force, creepage)| (scales.callers_force(force), scales.callers_creepage(creepage));
+        report.coarser =
+            self.levels.get(1).filter(|_| keeps_coarser).map(|level| converted(level.force_and_creepages()));
         Ok(end)
     }
 
-    /// Adds the least compliance of the layer to the coefficient of an element on itself. If it changes, operators are made anew.
+    /// Adds the least compliance of the layer between the bodies to the coefficients. If it has changed, the operators are discarded.
     fn set_layer(&mut self, friction: &Friction<'_>) {
         let layer = match friction.compliance {
             Coefficient::Uniform(compliance) => compliance,
@@ -268,7 +271,7 @@ impl Solver {
         }
     }
 
-    /// Makes the operators of a window unless they suit.
+    /// Sets up the operators of a box and its coarser grids, unless those of the last solve suit.
     fn set_up(&mut self, window: &Rectangle, rolling: Option<Rolling>) -> Result<()> {
         let grid = self.scales.grid(&window.grid(&self.grid));
         let first = self.scaled.rows().map(|_| window.y.start);
@@ -281,7 +284,7 @@ impl Solver {
         Ok(())
     }
 
-    /// The quality of the start, whose displacements are fresh.
+    /// Measures the residual and the missing forces of the present state, whose displacements are a fresh product.
     fn assess_start(&mut self, forces: Forces, tolerance: f64) -> StartQuality {
         let Level { problem, state, .. } = &mut self.levels[0];
         let certificate = Certificate::of(problem, state);

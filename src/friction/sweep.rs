@@ -1,43 +1,47 @@
-//! Steady rolling: the difference over a step of rolling, inverted element by element from the leading edge.
+//! Steady rolling: the operator B, and the solution of its difference equation element by element from the leading edge on.
 //!
-//! A step of length dq in the direction chi displaces by `(bx, by)` elements, and the operator is a product,
+//! A particle rolls a distance dq in the direction chi in each step. The displacement of a step is B q with
 //!
 //! ```text
-//! B = A d,    (d q)(x) = q(x) - q(x + dq)        dq = (dq cos chi, dq sin chi)
+//! B = A d,    (d q)(x) = q(x) - q(x + dq)        x and dq = (dq cos chi, dq sin chi): points of the plane
 //! ```
 //!
-//! `d x = v` is solved from the leading edge on, with x = 0 ahead of each run of C. Between the centres x is interpolated bilinearly. On
-//! slip the value ahead is weighted by E of the preconditioner (see [`disc`](super::disc)):
+//! A preconditioner solves `d z = v`, from the leading edge on, with z = 0 ahead of C. If x + dq lies between centres, z is interpolated there
+//! bilinearly. On slip z is a multiple of the tangent t of the circle, and the value ahead is weighted by E of the preconditioner (see
+//! [`tangent`](super::tangent)):
 //!
 //! ```text
-//! stick: x_i = x(ahead of i) + v_i
-//! slip:  x_i = t t.(E_i x(ahead of i) + v_i)
+//! stick: z_i = z(ahead of i) + v_i
+//! slip:  z_i = t t.(E_i z(ahead of i) + v_i)
 //! ```
 
 use super::plane::{plus, Vector};
 use crate::grid::Grid;
 use crate::threads::Threads;
 
-/// The length of a step of rolling.
+/// A step of rolling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rolling {
-    /// dq, a length.
+    /// The distance dq that the bodies roll, a length.
     pub distance: f64,
-    /// `(dq cos chi/dx, dq sin chi/dy)`.
+    /// The step in elements: `(dq cos chi/dx, dq sin chi/dy)`.
     pub by: (f64, f64),
 }
 
-/// The neighbours ahead of an element, with their weights, and the element's own.
+/// The bilinear interpolation at the point one step ahead of an element's centre.
 #[derive(Clone, Debug)]
 pub struct Sweep {
+    /// The step in elements.
     by: (f64, f64),
+    /// The neighbours of the element around that point: their offsets in x and y, and their weights.
     ahead: Vec<(isize, isize, f64)>,
+    /// The weight of the element itself, which is not 0 if the step is shorter than an element.
     own: f64,
 }
 
 impl Rolling {
-    /// The step on a coarser grid: as many elements, but at least one. The slip per length depends little on the length
-    /// of the step.
+    /// The step on a coarser grid: as many elements of that grid, but at least one. A longer step is possible because the slip per length depends
+    /// little on the length of the step.
     pub fn on(&self, fine: &Grid, coarse: &Grid) -> Rolling {
         let (is_along_x, length) = (self.by.0.abs() >= self.by.1.abs(), self.by.0.abs().max(self.by.1.abs()));
         let factor = if is_along_x { coarse.dx / fine.dx } else { coarse.dy / fine.dy } / length.min(1.0);
@@ -47,7 +51,7 @@ impl Rolling {
 }
 
 impl Sweep {
-    /// The weights of a step.
+    /// Computes the weights for a step.
     pub fn new(rolling: &Rolling) -> Sweep {
         let (x, y) = (rolling.by.0.floor(), rolling.by.1.floor());
         let (in_x, in_y) = (rolling.by.0 - x, rolling.by.1 - y);
@@ -65,46 +69,48 @@ impl Sweep {
         sweep
     }
 
-    /// The weight of an element itself at its place after a step, between the centres.
+    /// The weight of an element itself at the point one step ahead of its centre.
     pub fn own(&self) -> f64 {
         self.own
     }
 
-    /// The neighbours around an element's place after a step, with their weights.
+    /// The neighbours around the point one step ahead of an element's centre: their offsets in x and y, and their weights.
     pub fn neighbours(&self) -> &[(isize, isize, f64)] {
         &self.ahead
     }
 
-    /// Axx and Ayy ahead of a loaded element, interpolated from `at(x, y)`.
+    /// Axx and Ayy at the point one step ahead of a loaded element's centre, interpolated from the coefficients `at(x, y)` at whole offsets.
     pub fn ahead_of(&self, at: impl Fn(f64, f64) -> [f64; 3]) -> Vector {
-        let own = at(0.0, 0.0);
-        self.ahead.iter().fold([self.own * own[0], self.own * own[1]], |sum, &(x, y, weight)| {
+        let [xx, yy, _] = at(0.0, 0.0);
+        self.ahead.iter().fold([self.own * xx, self.own * yy], |sum, &(x, y, weight)| {
             let [xx, yy, _] = at(x as f64, y as f64);
             plus(sum, weight, [xx, yy])
         })
     }
 
-    /// Solves for x; `x` holds v on entry. `mixing(i)` is E, `project(i, v)` is P v of element i.
+    /// Solves `d z = v` as in the module. `z` holds v on entry and the solution on return. `mixing(i)` is E of element i, `project(i, v)` is v on
+    /// stick and t t.v on slip.
     pub fn solve(
         &self,
         grid: &Grid,
         mixing: impl Fn(usize) -> f64 + Sync + Send,
         project: impl Fn(usize, Vector) -> Vector + Sync + Send,
         threads: &Threads,
-        x: &mut [Vector],
+        z: &mut [Vector],
     ) {
         match self.ahead[..] {
-            [(1, 0, _)] if self.own == 0.0 => each_row(grid, (mixing, project), threads, (x, true)),
-            [(-1, 0, _)] if self.own == 0.0 => each_row(grid, (mixing, project), threads, (x, false)),
-            _ => self.any_direction(grid, (mixing, project), x),
+            [(1, 0, _)] if self.own == 0.0 => each_row(grid, (mixing, project), threads, (z, true)),
+            [(-1, 0, _)] if self.own == 0.0 => each_row(grid, (mixing, project), threads, (z, false)),
+            _ => self.any_direction(grid, (mixing, project), z),
         }
     }
 
+    /// [`Sweep::solve`] for any step, on one thread.
     fn any_direction(
         &self,
         grid: &Grid,
         (mixing, project): (impl Fn(usize) -> f64, impl Fn(usize, Vector) -> Vector),
-        x: &mut [Vector],
+        z: &mut [Vector],
     ) {
         let Grid { mx, my, .. } = *grid;
         let factor = 1.0 / (1.0 - self.own);
@@ -118,25 +124,25 @@ impl Sweep {
                 for &(in_x, in_y, weight) in &self.ahead {
                     let (jx, jy) = (ix.wrapping_add_signed(in_x), iy.wrapping_add_signed(in_y));
                     if jx < mx && jy < my {
-                        ahead = plus(ahead, weight, x[jy * mx + jx]);
+                        ahead = plus(ahead, weight, z[jy * mx + jx]);
                     }
                 }
-                let sum = plus(x[i], mixing(i), ahead);
-                x[i] = project(i, [factor * sum[0], factor * sum[1]]);
+                let sum = plus(z[i], mixing(i), ahead);
+                z[i] = project(i, [factor * sum[0], factor * sum[1]]);
             }
         }
     }
 }
 
-/// Steps of one element along x, `forward` or backward: rows are independent.
+/// [`Sweep::solve`] for steps of one element along x, towards larger x if `forward`. Rows are independent, so that threads share them.
 fn each_row(
     grid: &Grid,
     (mixing, project): (impl Fn(usize) -> f64 + Sync + Send, impl Fn(usize, Vector) -> Vector + Sync + Send),
     threads: &Threads,
-    (x, forward): (&mut [Vector], bool),
+    (z, forward): (&mut [Vector], bool),
 ) {
     let mx = grid.mx;
-    threads.for_each_row_pair((x, mx), (&mut vec![(); grid.my][..], 1), |iy, row, _| {
+    threads.for_each_row_pair((z, mx), (&mut vec![(); grid.my][..], 1), |iy, row, _| {
         let mut ahead = [0.0; 2];
         for k in 0..mx {
             let ix = if forward { mx - 1 - k } else { k };

@@ -1,11 +1,16 @@
-//! The linear system of a Newton step: the tangents of the circles, bordered by the creepages of given forces.
+//! The linear system of a Newton step, `H (z, dc) = (r, f)`, bordered by the creepages of given forces:
 //!
 //! ```text
 //! (P A P + D) z + sum_k dc_k P e_k = r
 //!                            sum z = f        for each direction k whose force is given
 //! ```
 //!
-//! preconditioned by `y = M r;  dc = S^-1 (sum y - f);  z = y - Y dc` with `Y_k = M P e_k` and `S_jk = sum (Y_k)_j`.
+//! P and D are those of [`tangent`](super::tangent), and e_k is the slip by a unit creepage in direction k. With the preconditioner M of
+//! [`Tangent::precondition`], the preconditioner of the bordered system is
+//!
+//! ```text
+//! y = M r;    dc = S^-1 (sum y - f);    z = y - Y dc        Y_k = M P e_k,  S_jk = sum (Y_k)_j
+//! ```
 
 use super::forces::{sum_of, Forces};
 use super::plane::{add, dot, plus, Vector};
@@ -16,10 +21,11 @@ use crate::methods::fgmres::{Bordered, Direction, System};
 use crate::methods::fields::{self, Fields};
 use crate::threads::Threads;
 
-/// A determinant below this part of the square of the largest entry, and an eigenvalue below this part of the largest, count as 0.
+/// A matrix S is singular if its determinant is below this part of the square of its largest entry. Then eigenvalues below this part of the largest
+/// one count as 0.
 const SINGULAR: f64 = 1e-8;
 
-/// The system, at the state that the tangent predicts.
+/// The system with P and D of a prediction of stick and slip.
 pub struct TangentSystem<'a> {
     pub problem: &'a mut Problem,
     pub tangent: &'a Tangent,
@@ -27,17 +33,19 @@ pub struct TangentSystem<'a> {
     scratch: Vec<Vector>,
 }
 
-/// The border of a system: the creepages of given forces.
+/// What the elimination of the border needs.
 pub struct Border {
     forces: Forces,
-    /// Y, S and its inverse.
+    /// The columns of Y; empty for a direction without a given force.
     columns: [Vec<Vector>; 2],
+    /// The rows of S.
     sums: [Vector; 2],
+    /// The rows of the inverse of S.
     inverse: [Vector; 2],
 }
 
 impl Border {
-    /// A border without its columns.
+    /// A border whose columns are still to be set by [`Border::set_column`].
     pub fn new(forces: Forces) -> Border {
         Border { forces, columns: [Vec::new(), Vec::new()], sums: [[0.0; 2]; 2], inverse: [[0.0; 2]; 2] }
     }
@@ -48,27 +56,27 @@ impl Border {
         [[1.0, 0.0], [0.0, 1.0]].into_iter().enumerate().filter(move |(k, _)| given[*k])
     }
 
-    /// Takes Y of direction k.
-    pub fn take(&mut self, k: usize, column: Vec<Vector>, problem: &Problem) {
+    /// Sets the column of Y for direction k, and updates S and its inverse.
+    pub fn set_column(&mut self, k: usize, column: Vec<Vector>, problem: &Problem) {
         let sum = self.forces.only_given(sum_of(problem, &column));
         (self.sums[0][k], self.sums[1][k]) = (sum[0], sum[1]);
         (self.inverse, self.columns[k]) = (inverse(self.sums), column);
     }
 
-    /// dc for the excess of the sums. It is exactly 0 if the creepage is given, which may be smaller than round-off.
-    pub fn creepages(&self, too_much: Vector) -> Vector {
-        let rest = self.forces.only_given(too_much);
-        self.forces.only_given(self.inverse.map(|row| dot(row, rest)))
+    /// Computes `dc = S^-1 excess`, where `excess` is the sum of y less f. Given creepages do not change: their dc is exactly 0.
+    pub fn creepages(&self, excess: Vector) -> Vector {
+        let excess = self.forces.only_given(excess);
+        self.forces.only_given(self.inverse.map(|row| dot(row, excess)))
     }
 
-    /// `z -= Y dc`.
+    /// Subtracts Y dc from z.
     pub fn balance(&self, threads: &Threads, creepages: Vector, z: &mut [Vector]) {
         let columns = creepages.iter().zip(&self.columns).filter(|(_, y)| !y.is_empty());
         let terms: Vec<(f64, &[Vector])> = columns.map(|(c, y)| (-c, &y[..])).collect();
         fields::add_all(threads, z, &terms);
     }
 
-    /// The sums of z where forces are given.
+    /// The sums of z in the directions with given forces; 0 in the others.
     pub fn sums_of(&self, problem: &Problem, z: &[Vector]) -> Vector {
         if self.forces.any() {
             self.forces.only_given(sum_of(problem, z))
@@ -77,14 +85,14 @@ impl Border {
         }
     }
 
-    /// Returns the columns.
+    /// Gives the memory of the columns back to `fields`.
     pub fn give(self, fields: &mut Fields) {
         self.columns.into_iter().filter(|field| !field.is_empty()).for_each(|field| fields.give(field));
     }
 }
 
 impl<'a> TangentSystem<'a> {
-    /// The system with Y and S.
+    /// Sets up the system, and computes Y and S.
     pub fn new(
         problem: &'a mut Problem,
         tangent: &'a Tangent,
@@ -100,24 +108,25 @@ impl<'a> TangentSystem<'a> {
             let mut column = fields.take(n)?;
             system.precondition_field(&unit, &mut column);
             fields.give(unit);
-            system.border.take(k, column, system.problem);
+            system.border.set_column(k, column, system.problem);
         }
         Ok(system)
     }
 
-    /// Returns the system's fields.
+    /// Gives the memory of the system back to `fields`.
     pub fn give(self, fields: &mut Fields) {
         fields.give(self.scratch);
         self.border.give(fields);
     }
 
-    /// `z = M r`, 0 outside C.
+    /// Computes `z = M r`, which is 0 outside C.
     pub fn precondition_field(&mut self, r: &[Vector], z: &mut [Vector]) {
-        // r is of the order of the slip; the unit only keeps single precision in its range.
+        // r is of the order of slips, not of rms_bound. The unit only keeps single precision in its range.
         let unit = self.problem.rms_bound();
         self.tangent.precondition(self.problem, r, unit, &mut self.scratch, z);
     }
 
+    /// The preconditioner of the bordered system.
     fn precondition(&mut self, r: &Bordered, fields: &mut Fields) -> Result<Bordered> {
         let mut z = fields.take(r.field.len())?;
         self.precondition_field(&r.field, &mut z);
@@ -126,7 +135,7 @@ impl<'a> TangentSystem<'a> {
         Ok(Bordered { field: z, border })
     }
 
-    /// `H z`, from the product of the field of z with A.
+    /// Computes `H z`. `product` is A times the field of z.
     fn apply(&self, z: &Bordered, product: &[Vector], fields: &mut Fields) -> Result<Bordered> {
         let tangent = self.tangent;
         let mut h = fields.take(product.len())?;
@@ -138,7 +147,7 @@ impl<'a> TangentSystem<'a> {
         Ok(Bordered { field: h, border })
     }
 
-    /// `r -= H z` for a field, from its product with A.
+    /// Subtracts `H z` from r, for a system without border. `product` is A times the field of z.
     pub fn subtract(&self, z: &Bordered, product: &[Vector], r: &mut [Vector]) {
         let tangent = self.tangent;
         fields::map(self.problem.threads(), r, |i, r| {
@@ -147,7 +156,7 @@ impl<'a> TangentSystem<'a> {
         });
     }
 
-    /// A times a field, to the precision of directions.
+    /// Computes A times a field, in the precision of search directions.
     pub fn multiply(&mut self, field: &[Vector], product: &mut [Vector]) {
         let unit = self.problem.rms_bound();
         self.problem.operators.multiply_fast(field, unit, product);
@@ -164,7 +173,7 @@ impl System for TangentSystem<'_> {
     }
 }
 
-/// The inverse of a 2 x 2 matrix, of sums by creepages. It is not symmetric if bounds are carried from element to element.
+/// The inverse of a 2 x 2 matrix, given by rows, or its pseudo-inverse if it is singular. S need not be symmetric.
 pub fn inverse(matrix: [Vector; 2]) -> [Vector; 2] {
     let [[a, b], [c, d]] = matrix;
     let (determinant, largest) = (a * d - b * c, [a, b, c, d].into_iter().fold(0.0, |most: f64, m| most.max(m.abs())));
@@ -174,8 +183,8 @@ pub fn inverse(matrix: [Vector; 2]) -> [Vector; 2] {
     pseudo_inverse(matrix)
 }
 
-/// The pseudo-inverse of a symmetric 2 x 2 matrix, by its eigenvectors. The matrix is singular if all of C slips one way, or if one force
-/// is given.
+/// The pseudo-inverse of the symmetric part of a 2 x 2 matrix, by its eigenvectors. S is singular if all of C slips in one direction, or if only one
+/// force is given.
 fn pseudo_inverse([[a, b], [c, d]]: [Vector; 2]) -> [Vector; 2] {
     let off = 0.5 * (b + c);
     let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));

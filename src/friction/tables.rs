@@ -1,9 +1,10 @@
-//! The caller's tangential coefficients: three tables, for whole offsets.
+//! The caller's tangential influence coefficients: Axx, Ayy and Axy at offsets of whole elements.
 //!
 //! On a grid coarsened in x the coefficient is the mean displacement of the fine elements of one coarse element by a unit traction on
 //! those of another, `c_H(K) = c(2K-1)/2 + c(2K) + c(2K+1)/2`, and likewise in y, as for the normal coefficients.
 //!
-//! In steady rolling coefficients may be uneven in x. Products use them unchanged, a preconditioner their even part in x, for Axy the odd part.
+//! In steady rolling `c(-x)` may differ from `c(x)`: such tables are called uneven. Products use them unchanged. A preconditioner uses the even part
+//! in x of Axx and Ayy, and the odd part of Axy.
 
 use std::sync::Arc;
 
@@ -11,23 +12,25 @@ use crate::effects::TangentialInfluence;
 use crate::error::Result;
 use crate::memory::zeros;
 
-/// The coefficients of one offset: `Axx, Ayy, Axy`.
+/// The coefficients of one offset: `[Axx, Ayy, Axy]`.
 pub type Entry = [f64; 3];
 
-/// `Axx, Ayy, Axy` at the offsets `0..cx` by `0..cy`: Axx and Ayy are even in both directions, Axy is odd in both.
+/// The caller's coefficients. Axx and Ayy are even in y, Axy is odd in y. In x the same holds, unless the tables are uneven.
 #[derive(Clone, Debug)]
 pub struct Tables {
+    /// The tables have the offsets below `cx` in x and below `cy` in y.
     cx: usize,
     cy: usize,
+    /// The coefficients at the offsets `0..cx` by `0..cy`, `[y][x]`. For uneven tables: the even part in x of Axx and Ayy, the odd part of Axy.
     values: Arc<Vec<Entry>>,
-    /// If the coefficients are uneven in x: the coefficients at the offsets `1 - cx..cx` by `0..cy`; `values` are then their even and odd parts.
+    /// For uneven tables: the coefficients at the offsets `1 - cx..cx` by `0..cy`, `[y][x]`.
     uneven: Option<Arc<Vec<Entry>>>,
-    /// The common factor of the coefficients, a power of two.
+    /// A power of two, by which stored coefficients are multiplied.
     factor: f64,
 }
 
 impl Tables {
-    /// Copies checked tables.
+    /// Copies the caller's tables, which have been checked.
     pub fn new(influence: &TangentialInfluence<'_>) -> Result<Tables> {
         match influence.is_uneven() {
             true => Tables::of_uneven(influence.cx, influence.cy, |x, y| influence.at(x, y)),
@@ -35,7 +38,7 @@ impl Tables {
         }
     }
 
-    /// `at(x, y)` at each offset of two quadrants.
+    /// Uneven tables with the coefficients `at(x, y)` at the offsets `1 - cx..cx` by `0..cy`.
     fn of_uneven(cx: usize, cy: usize, at: impl Fn(i64, i64) -> Entry) -> Result<Tables> {
         let (width, last) = (2 * cx - 1, cx as i64 - 1);
         let mut values: Vec<Entry> = zeros(width * cy, "the tangential influence coefficients")?;
@@ -61,7 +64,7 @@ impl Tables {
         self.uneven.as_ref().unwrap_or(&self.values).iter().all(|entry| entry[2] == 0.0)
     }
 
-    /// The given coefficients at a whole offset, not the even part; beyond the tables the outermost ones.
+    /// The coefficients at an offset, also of uneven tables. Beyond the tables the outermost coefficients are used.
     pub fn whole_at(&self, x: i64, y: i64) -> Entry {
         let Some(values) = &self.uneven else { return self.at(x, y) };
         let last = self.cx as i64 - 1;
@@ -71,7 +74,7 @@ impl Tables {
         [xx, yy, if y < 0 { -xy } else { xy }]
     }
 
-    /// `at(x, y)` at each offset of the quadrant.
+    /// Tables with the coefficients `at(x, y)` at the offsets `0..cx` by `0..cy`.
     pub fn of(cx: usize, cy: usize, at: impl Fn(i64, i64) -> Entry) -> Result<Tables> {
         let mut values: Vec<Entry> = zeros(cx * cy, "the tangential influence coefficients")?;
         for (k, entry) in values.iter_mut().enumerate() {
@@ -80,17 +83,17 @@ impl Tables {
         Ok(Tables { cx, cy, values: Arc::new(values), uneven: None, factor: 1.0 })
     }
 
-    /// The tables have offsets below these.
+    /// The offsets of the tables in x and in y are below these numbers.
     pub fn reach(&self) -> (usize, usize) {
         (self.cx, self.cy)
     }
 
-    /// The tables in units of `unit`.
+    /// The tables divided by `unit`.
     pub fn in_units_of(&self, unit: f64) -> Tables {
         Tables { factor: self.factor / unit, ..self.clone() }
     }
 
-    /// The coefficients at a whole offset; beyond the tables the outermost ones.
+    /// The coefficients at an offset, of uneven tables the even and odd parts in x. Beyond the tables the outermost coefficients are used.
     pub fn at(&self, x: i64, y: i64) -> Entry {
         let clamp = |k: i64, c: usize| (k.unsigned_abs() as usize).min(c - 1);
         let [xx, yy, xy] =
@@ -102,6 +105,7 @@ impl Tables {
     pub fn coarsened(&self, in_x: bool, in_y: bool) -> Result<Tables> {
         let stencil = |is_halved: bool, k: i64| match is_halved {
             true => [(2 * k - 1, 0.5), (2 * k, 1.0), (2 * k + 1, 0.5)],
+            // Padded with weights of 0 to the length of the other stencil.
             false => [(k, 1.0), (k, 0.0), (k, 0.0)],
         };
         let half = |c: usize, is_halved: bool| if is_halved { c.div_ceil(2) } else { c };

@@ -1,4 +1,4 @@
-//! The start of a solve: bounds, rigid slip and tractions.
+//! The start of a solve: sets the bounds g, the slip w and the first tractions q on the finest grid of the box.
 
 use super::certificate::is_on_circle;
 use super::displaced::displaced;
@@ -20,13 +20,13 @@ use crate::methods::fields;
 use crate::powers::LARGEST;
 use crate::rectangle::Rectangle;
 
-/// Largest ratio of rigid slips to displacements by tractions: single precision ends at 1e38.
+/// The largest ratio of rigid slips to displacements by tractions: numbers of single precision end at 1e38.
 pub(super) const LARGEST_RATIO: f64 = 1e30;
-/// Least ratio: the round-off of sideways displacements by pressures is a slip as well.
+/// The least such ratio of slips that are not 0. It is so small because the round-off of tangential displacements by pressures is a slip, too.
 const LEAST_RATIO: f64 = 1e-60;
 
 impl Solver {
-    /// Allocates memory for the result.
+    /// Allocates memory for the result, unless it is allocated already.
     pub(super) fn make_room(&mut self) -> Result<()> {
         if self.solution.traction.is_empty() {
             let n = self.grid.len();
@@ -38,7 +38,7 @@ impl Solver {
         Ok(())
     }
 
-    /// Keeps the tractions of the last result as those before the step.
+    /// Copies the tractions of the last result: they are those before the step.
     pub(super) fn keep_tractions(&mut self) -> Result<()> {
         let last = &self.solution.traction;
         unwritten(&mut self.before, last.len(), [f64::NAN; 2], FIELDS, &self.threads)?;
@@ -46,16 +46,15 @@ impl Solver {
         Ok(())
     }
 
-    /// Sets g, w and the tractions of the start. Rejects slips out of range. Returns whether nearly all of C slips at
-    /// the start.
+    /// Sets g, w and the tractions of the start. Refuses slips out of range. Returns whether nearly all of C slips at the start.
     pub(super) fn begin(&mut self, request: &Request<'_>, from_rest: bool, window: &Rectangle) -> Result<bool> {
-        let had_slip = self.take_over(request, from_rest, window)?;
-        self.leave_creepages_out_of_range();
+        let mostly_slips = self.set_problem(request, from_rest, window)?;
+        self.reset_creepages_out_of_range();
         self.check_range()?;
-        Ok(had_slip)
+        Ok(mostly_slips)
     }
 
-    fn take_over(&mut self, request: &Request<'_>, from_rest: bool, window: &Rectangle) -> Result<bool> {
+    fn set_problem(&mut self, request: &Request<'_>, from_rest: bool, window: &Rectangle) -> Result<bool> {
         let Request { friction, start, .. } = *request;
         let (grid, kept, scales) = (&self.grid, &self.before, self.scales);
         let Level { problem, state, .. } = &mut self.levels[0];
@@ -79,29 +78,29 @@ impl Solver {
         }
         take_step(problem, friction, grid, (&scales, self.offset));
         let found = friction.has_forces();
-        (problem.given, problem.left, problem.update) = (0.0, 0.0, 0.0);
+        (problem.rms_given_slip, problem.rms_previous, problem.update) = (0.0, 0.0, 0.0);
         problem.bound_changed();
         threads.for_each_row_pair((&mut problem.slip, width), (&mut problem.rigid, width), |_, slip, rigid| {
             slip.copy_from_slice(rigid);
         });
         if !from_rest {
-            self.leave(friction)?;
+            self.subtract_previous_displacements(friction)?;
         }
         if from_rest && matches!(start, Start::Before) {
             return Ok(false);
         }
         self.start_from(request, window);
         let Level { problem, state, .. } = &mut self.levels[0];
-        let slipped = problem.contact().filter(|&i| square(state.q[i]).sqrt() >= 0.999 * problem.bound[i]).count();
-        let mostly = problem.places.is_mostly_slip(slipped);
+        let slipping = problem.contact().filter(|&i| square(state.q[i]).sqrt() >= 0.999 * problem.bound[i]).count();
+        let mostly_slips = problem.places.is_mostly_slip(slipping);
         problem.refresh(state);
         if let Start::Given(_) = request.start {
             problem.offset = [0, 1].map(|k| if found[k] { creepage_of(problem, state, k) } else { 0.0 });
         }
-        Ok(mostly)
+        Ok(mostly_slips)
     }
 
-    /// Sets the tractions and the offset of a start other than the tractions before the step.
+    /// Sets the tractions of the start, and its creepages if forces are given. With [`Start::Before`] q is already that before the step.
     fn start_from(&mut self, request: &Request<'_>, window: &Rectangle) {
         let scales = self.scales;
         let Level { problem, state, .. } = &mut self.levels[0];
@@ -121,8 +120,8 @@ impl Solver {
         }
     }
 
-    /// Subtracts from w the displacements before the step. The state has the tractions of that time.
-    fn leave(&mut self, friction: &Friction<'_>) -> Result<()> {
+    /// Subtracts u', the displacements before the step, from w, except in steady rolling. q of the state are the tractions before the step.
+    fn subtract_previous_displacements(&mut self, friction: &Friction<'_>) -> Result<()> {
         let Level { problem, state, .. } = &mut self.levels[0];
         match friction.motion {
             Motion::SteadyRolling => return Ok(()),
@@ -141,18 +140,18 @@ impl Solver {
         for (w, u) in problem.slip.iter_mut().zip(&state.u) {
             *w = [w[0] - u[0], w[1] - u[1]];
         }
-        problem.left = problem.rms(|i| state.u[i]);
+        problem.rms_previous = problem.rms(|i| state.u[i]);
         Ok(())
     }
 
-    /// The displacement by the tractions of full slip, on the elements of the last solve.
+    /// The order of magnitude of the displacement of an element by a traction at its bound, in the last solve.
     pub fn full_displacement(&self) -> f64 {
         let displaced = self.levels.first().map_or(0.0, |level| level.problem.displaced_by_bounds());
-        self.scales.own_displacement([displaced, 0.0])[0]
+        self.scales.callers_displacement([displaced, 0.0])[0]
     }
 
-    /// Creepages that are to be found begin at 0 if those of the start are out of range: these need not be the caller's.
-    fn leave_creepages_out_of_range(&mut self) {
+    /// Starts the search for creepages at 0 if those of the start are out of range. They are not refused: the caller need not have given them.
+    fn reset_creepages_out_of_range(&mut self) {
         let problem = &mut self.levels[0].problem;
         let ratio = length(problem.offset) / problem.displaced_by_bounds();
         if !(LEAST_RATIO < ratio && ratio < LARGEST_RATIO) {
@@ -160,28 +159,28 @@ impl Solver {
         }
     }
 
-    /// Rejects slips far above or below displacements by tractions, because products of their ratios overflow.
+    /// Refuses slips far above or below the displacements by tractions, because squares of their ratio would leave the range of numbers.
     fn check_range(&self) -> Result<()> {
         let problem = &self.levels[0].problem;
         let (slip, displaced) = (problem.rms_rigid(), problem.displaced_by_bounds());
         let is_far = |slip: f64| !(slip / displaced < LARGEST_RATIO);
-        // The squares of small slips underflow.
+        // Each slip is compared with 0, because the squares of tiny slips, and with them the rms, are 0.
         let rigid = |i: usize| add(problem.rigid[i], problem.weighted(i, problem.offset));
         let moves = problem.contact().any(|i| rigid(i) != [0.0; 2]);
-        // The displacements before the step are slips, as well.
+        // w, which contains the displacements before the step, must be in range as well.
         let slipped = problem.rms_slip();
         let most = slip.max(slipped);
         if displaced > 0.0 && (is_far(slip) || is_far(slipped) || moves && !(most / displaced > LEAST_RATIO)) {
-            // The mean of tiny slips is 0.
+            // The message has the largest component if the rms of tiny slips is 0.
             let components = problem.contact().flat_map(rigid);
             let largest = components.fold(0.0, |most: f64, w| most.max(w.abs()));
             let slip = if most > 0.0 { most } else { largest };
             let motion = if slip > displaced { "a smaller motion" } else { "a larger motion or none" };
             let rule = format!("choose {motion}, coefficients of friction or shear moduli of another order");
-            // A length that overflows in the scene's units has no number.
-            let own = self.scales.own_displacement([slip, displaced]);
+            // A length that overflows in the caller's units is not printed as a number.
+            let lengths = self.scales.callers_displacement([slip, displaced]);
             let [slip, displaced] =
-                own.map(|length| if length.is_finite() { format!("{length:e}") } else { "1e308 or more".into() });
+                lengths.map(|length| if length.is_finite() { format!("{length:e}") } else { "1e308 or more".into() });
             return invalid(format!(
                 "slips are of order {slip}, displacements by friction of order {displaced}, more than 1e30 times or less than 1e-60 times that; {rule}"
             ));
@@ -190,10 +189,10 @@ impl Solver {
     }
 }
 
-/// Sets the start of unknown creepages, the scale of residuals, and the change of the slip by spin over a step; `last`:
-/// the last creepages found.
+/// Sets the first guess of the unknown creepages, the scale of residuals and `ahead` of the problem. `last` are the creepages that the last solve
+/// found.
 fn take_step(problem: &mut Problem, friction: &Friction<'_>, grid: &Grid, (scales, last): (&Scales, Vector)) {
-    // A warm start of steady rolling includes the last creepages.
+    // Steady rolling that continues starts from the last creepages.
     let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
     let found = friction.has_forces();
     problem.offset = scales.displacement([0, 1].map(|k| if is_warm && found[k] { last[k] } else { 0.0 }));
@@ -205,7 +204,7 @@ fn take_step(problem: &mut Problem, friction: &Friction<'_>, grid: &Grid, (scale
     problem.ahead = scales.displacement(spin_ahead(friction, grid));
 }
 
-/// Sets the weights of creepages, and the compliance of a layer beyond its least, on the elements of a window.
+/// Sets the weights of creepages, and the compliance by which a layer exceeds its least compliance, on the elements of the box.
 fn take_weights_and_layer(
     problem: &mut Problem,
     friction: &Friction<'_>,
@@ -217,8 +216,8 @@ fn take_weights_and_layer(
     problem.weights = match friction.weights {
         None => Vec::new(),
         Some([x, y]) => {
-            let of = (0..problem.grid.len()).map(place).map(|i| [x[i], y[i]]);
-            collected(of, "the weights of creepages")?
+            let weights = (0..problem.grid.len()).map(place).map(|i| [x[i], y[i]]);
+            collected(weights, "the weights of creepages")?
         }
     };
     let least = problem.operators.tangential.layer();
@@ -229,7 +228,7 @@ fn take_weights_and_layer(
     Ok(())
 }
 
-/// The creepage of the tractions of a start: the mean slip of the stick area is then 0. 0 in full slip.
+/// The creepage in direction k that fits the tractions of a start: with it the weighted mean slip of the stick area is 0. In full slip it is 0.
 fn creepage_of(problem: &Problem, state: &State, k: usize) -> f64 {
     let sticks = |i: usize| problem.bound[i] > 0.0 && !is_on_circle(state.q[i], problem.bound[i]);
     let terms = |i: usize| {
@@ -249,12 +248,13 @@ fn creepage_of(problem: &Problem, state: &State, k: usize) -> f64 {
     }
 }
 
-/// Tractions in the units of the iterations, clamped to their range: in steady rolling they only start the iteration.
+/// Converts a traction to the units of the iterations, and clamps its components to the range of numbers whose squares are finite. Tractions that are
+/// so large occur in steady rolling only, where they are a first guess.
 fn in_range(q: Vector, scales: &Scales) -> Vector {
     q.map(|q| scales.traction(q).clamp(-LARGEST, LARGEST))
 }
 
-/// The change of the slip by spin over one step of steady rolling.
+/// The difference, by spin, of the rigid slips of a step at two points one step apart, in steady rolling.
 fn spin_ahead(friction: &Friction<'_>, grid: &Grid) -> Vector {
     let (distance, (sine, cosine)) = (friction.distance(grid), friction.rolling_direction.sin_cos());
     match friction.motion {

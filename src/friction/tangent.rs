@@ -1,16 +1,17 @@
-//! The prediction of stick and slip by the natural map, with the tangents of the circles.
+//! The prediction of stick and slip by the natural map, and the linearisation of the slip condition.
 //!
 //! ```text
-//! tau = q - rho s;   slip where |tau| > g
-//! n = tau/|tau|,  D = (|tau|/g - 1)/rho   on slip: |s|/g at the solution, the curvature of the circle
+//! tau = q - rho s;                        an element slips if |tau| > g
+//! n = tau/|tau|,  D = (|tau|/g - 1)/rho   on slip; at the solution D = |s|/g
 //! P v = v on stick,  v - n (n.v) on slip,  0 outside C
 //! ```
 //!
-//! The natural map, not |q| = g, decides stick or slip, which makes the iterations robust. On a circle of radius g the slope of the slip
-//! along the tangent is that of a layer of compliance D between the bodies.
+//! The natural map tau, and not |q| = g, decides whether an element slips, which makes the iterations robust. If the traction of a slipping element
+//! moves along its circle, the direction of the slip follows: the slip changes as by a layer of compliance D between the bodies. D is called the
+//! curvature.
 //!
-//! For tractions near their circle n is q/|q| and `D = -(n.s)/g`, the same at the solution: the step to the circle is then the shortest, of
-//! second order in the error.
+//! For tractions near their circle n is q/|q| and `D = -(n.s)/g`, which is the same at the solution. Then the step onto the circle is the shortest,
+//! of second order in the error.
 
 use super::certificate::rest;
 use super::plane::{add, dot, plus, square, Vector};
@@ -20,17 +21,17 @@ use crate::error::Result;
 use crate::memory::zeros;
 use crate::methods::fields::{self, BLOCK};
 
-/// Factor on D/a0 in `E = 1/(1 + CURVATURE_WEIGHT D/a0)`. In the preconditioner E is the weight of the inverse of A,
-/// and 1 - E that of the inverse of D + a0.
+/// The factor on D/a0 in `E = 1/(1 + CURVATURE_WEIGHT D/a0)`. In the preconditioner E is the weight of the approximate inverse of A, and 1 - E that
+/// of the inverse of D + a0.
 pub(super) const CURVATURE_WEIGHT: f64 = 0.5;
 
-/// Distance from the circle, relative to its radius, within which tractions count as near.
+/// A traction is near its circle if |q| differs from g by at most this part of g.
 pub(super) const NEAR_THE_CIRCLE: f64 = 0.2;
-/// Least cosine of the angle between q and tau at which tractions near their circle have n = q/|q|. Tractions along
-/// their slip must reverse, so their n is that of tau.
+/// Near the circle n is q/|q| only if the cosine of the angle between q and tau is at least this. A traction that points along its slip has to
+/// reverse, so its n is that of tau.
 pub(super) const ALIGNED: f64 = 0.9;
 
-/// Whether an element sticks or slips.
+/// Whether an element is predicted to stick or to slip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// The element is not in C.
@@ -42,42 +43,42 @@ pub enum Side {
     Slip,
 }
 
-/// The prediction of the natural map.
+/// The prediction of the natural map on a grid.
 #[derive(Default)]
 pub struct Tangent {
     pub side: Vec<Side>,
-    /// n, on slip.
+    /// The normal n of the circle on slip; 0 on stick, undefined outside C.
     pub normal: Vec<Vector>,
-    /// D; 0 where nothing slips.
+    /// The curvature D on slip; 0 elsewhere.
     pub curvature: Vec<f64>,
-    /// E of the preconditioner: 1 on stick, unless a layer is softer there than elsewhere.
+    /// The weight E of the preconditioner. On stick it is 1, unless a layer between the bodies is softer there than elsewhere.
     pub mixing: Vec<f64>,
-    /// `P(-s)`.
+    /// The projected residual `P(-s)`.
     pub projected: Vec<Vector>,
-    /// Elements that slip.
+    /// The number of elements that slip.
     pub slip_count: usize,
 }
 
-/// The measures of a state.
+/// How well a state meets the conditions of friction.
 #[derive(Clone, Copy, Debug)]
 pub struct Measures {
     /// The residual of the certificate.
     pub residual: f64,
-    /// `rms_C(max(0, |q| - g))/rms_C(g)`.
+    /// The excess of tractions over their bounds, `rms_C(max(0, |q| - g))/rms_C(g)`.
     pub excess: f64,
 }
 
-/// The prediction for an element of C: see [`Tangent`]; n is 0 on stick.
+/// The prediction for one element of C. The fields are those of [`Tangent`]; n is 0 on stick.
 pub(super) struct Prediction {
     pub side: Side,
     pub normal: Vector,
     pub curvature: f64,
     pub projected: Vector,
-    /// The square of the slip's residual.
+    /// The square of the residual slip.
     pub rest: f64,
 }
 
-/// The prediction for an element with q, s and the bound g.
+/// Predicts stick or slip of an element with q, s and the bound g.
 #[inline]
 pub(super) fn predict_element((q, s): (Vector, Vector), g: f64, (rho, inverse_rho): (f64, f64)) -> Prediction {
     let (tau, against, rest) = (plus(q, -rho, s), [-s[0], -s[1]], rest(s, q, g));
@@ -88,7 +89,7 @@ pub(super) fn predict_element((q, s): (Vector, Vector), g: f64, (rho, inverse_rh
     Prediction { side: Side::Slip, normal, curvature, projected: plus(against, dot(s, normal), normal), rest }
 }
 
-/// rho of the natural map, at most `most`, with which the rms slip moves tractions by the rms bound.
+/// The rho of the natural map with which rho times the rms slip is the rms bound, but at most `most`.
 pub(super) fn rho_of((bound, slip): (f64, f64), most: f64) -> f64 {
     if slip > 0.0 {
         most.min(bound / slip)
@@ -103,7 +104,7 @@ pub(super) fn mixing(curvature: f64, a0: f64) -> f64 {
     1.0 / (1.0 + CURVATURE_WEIGHT * curvature / a0)
 }
 
-/// P v, with the normal n. It is v if n = 0.
+/// P v, with the normal n. On stick n is 0, and P v is v.
 #[inline]
 pub(super) fn project(n: Vector, v: Vector) -> Vector {
     plus(v, -dot(v, n), n)
@@ -140,10 +141,10 @@ impl Tangent {
         self.projected.capacity() * each
     }
 
-    /// Predicts stick and slip from q and its displacements.
+    /// Predicts stick and slip of all elements from q and u. Returns the measures of this state.
     pub fn predict(&mut self, problem: &Problem, state: &State, rho: f64) -> Measures {
         let (u, a0, inverse_rho) = (&state.u, problem.operators.self_influence, 1.0 / rho);
-        // The excess of a layer counts relative to the coefficient without rolling. In steady rolling a0 is that of a step.
+        // In steady rolling a0 is the self-influence of a step. The excess of a layer is scaled by the same ratio to that without rolling.
         let share = a0 / problem.operators.greatest();
         let beyond = |i: usize| problem.operators.excess.as_ref().map_or(0.0, |excess| share * excess.at(i));
         let Tangent { side, normal, curvature, mixing: mixings, projected, .. } = self;
@@ -158,7 +159,7 @@ impl Tangent {
                     let i = start + k;
                     let g = problem.bound[i];
                     if !(g > 0.0) {
-                        // Most elements outside were outside before.
+                        // Writes only if needed: most elements outside C were outside before.
                         if side[k] != Side::Outside {
                             (side[k], curvature[k], projected[k]) = (Side::Outside, 0.0, [0.0; 2]);
                         }
@@ -184,7 +185,7 @@ impl Tangent {
         Measures { residual: relative(squares, scale), excess: relative(excess, problem.rms_bound()) }
     }
 
-    /// P v at element i, 0 outside C.
+    /// P v of element i.
     #[inline]
     pub fn project_inside(&self, i: usize, v: Vector) -> Vector {
         match self.side[i] {
@@ -194,15 +195,20 @@ impl Tangent {
         }
     }
 
-    /// `z = P(E X' M X E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/(2 a0))`, for r = P r, 0 outside C: the circulant inverse M of A, with residuals
-    /// extended beyond C by X (see [`Extension`](crate::methods::extension::Extension)), and a diagonal inverse where the curvature D dominates.
-    /// The compliance of a layer beyond its least adds to D. In steady rolling, with `B = A d`, the first term has x from `d x = E M E r`
-    /// (see [`Sweep`](super::sweep::Sweep)).
+    /// The preconditioner of Newton's systems, for residuals r = P r. z is 0 outside C.
+    ///
+    /// ```text
+    /// z = P(E X' M X E r) + (1 - E) r/(D + a0),    E = 1/(1 + D/(2 a0))
+    /// ```
+    ///
+    /// M is the inverse of a circulant near A. X extends residuals beyond C (see [`Extension`](crate::methods::extension::Extension)). The second
+    /// term is a diagonal inverse where the curvature D dominates. The excess compliance of a layer adds to D. In steady rolling, where `B = A d`,
+    /// the first term is the solution z of `d z = E M E r` (see [`Sweep`](super::sweep::Sweep)).
     pub fn precondition(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let a0 = problem.operators.self_influence;
         let threads = problem.threads().clone();
         self.invert(problem, r, unit, mixed, z);
-        // The diagonal inverse, on slip or where a layer is softer than elsewhere.
+        // `own` is the factor of the diagonal inverse. It is not 0 on slip and where a layer is softer than elsewhere.
         let beyond = |i: usize| problem.operators.excess.as_ref().map_or(0.0, |excess| excess.at(i));
         let own = |i: usize| match self.side[i] {
             Side::Outside => 0.0,
@@ -219,7 +225,7 @@ impl Tangent {
             sweep.solve(&problem.grid, |i| self.mixing[i], project, &threads, z);
             return fields::map(&threads, z, |i, z| plus(z, own(i), r[i]));
         }
-        // A rolling step also takes differences of the layer's displacement. The sweep carries (a + r) x, because r differs by element.
+        // In steady rolling d also acts on the displacement of the layer. So the sweep solves for (a + r) z, where r is the excess of each element.
         let a = problem.operators.greatest();
         let soft = |i: usize| (a + beyond(i)) / a;
         let of_layer = |i: usize| match self.side[i] {
@@ -232,22 +238,22 @@ impl Tangent {
         fields::map(&threads, z, |i, z| plus(z.map(|z| z / soft(i)), after(i), r[i]));
     }
 
-    /// `z = X' M X E r`, undefined outside C. `mixed` is overwritten.
+    /// Computes `z = X' M X E r`, which is undefined outside C. `mixed` is scratch.
     fn invert(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let (threads, n) = (problem.threads().clone(), r.len());
         let compliance = problem.operators.relative_compliance();
         let Problem { operators, extension, .. } = problem;
-        // Without extension: in rolling the sweep starts from 0 at each leading edge, and values outside C do not help.
+        // Steady rolling has no extension: the sweep starts from 0 at each leading edge, so that values outside C do not help.
         let Some(extension) = extension else {
             fields::fill(&threads, mixed, |i| r[i].map(|r| self.mixing[i] * r));
             return operators.precondition(mixed, unit, z);
         };
-        // By component, in the memory of both fields.
+        // The components of a field are stored one after the other, in the memory of z and of `mixed`.
         let (x, y) = z.as_flattened_mut().split_at_mut(n);
-        for (component, given) in [&mut *x, &mut *y].into_iter().enumerate() {
-            threads.for_each_plain_row(given, BLOCK, |k, given| {
-                let mixing = self.mixing[k * BLOCK..].iter().zip(&r[k * BLOCK..]);
-                given.iter_mut().zip(mixing).for_each(|(given, (mixing, r))| *given = mixing * r[component]);
+        for (component, values) in [&mut *x, &mut *y].into_iter().enumerate() {
+            threads.for_each_plain_row(values, BLOCK, |k, values| {
+                let factors = self.mixing[k * BLOCK..].iter().zip(&r[k * BLOCK..]);
+                values.iter_mut().zip(factors).for_each(|(value, (mixing, r))| *value = mixing * r[component]);
             });
         }
         let (to_x, to_y) = mixed.as_flattened_mut().split_at_mut(n);

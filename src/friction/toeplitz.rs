@@ -1,10 +1,10 @@
-//! Products `u = A q` of tractions, by [`VectorProduct`].
+//! Products `u = A q` of tractions with two components, by FFT ([`VectorProduct`]).
 //!
-//! Axx and Ayy are even in both directions, Axy is odd in both. Steady rolling by whole elements along x uses differences of such products. In other
-//! steps of rolling coefficients lie between the centres and are neither even nor odd.
+//! Axx and Ayy are even in both directions, Axy is odd in both. Steady rolling by whole elements along x uses differences of such coefficients. In
+//! other steps of rolling the coefficients lie between the centres and are neither even nor odd.
 //!
-//! Without Axy (a Poisson ratio of 0, a single row) a traction displaces in its own direction only: the other component is exactly 0, and a zero
-//! component takes no time.
+//! If Axy is 0 (for a Poisson ratio of 0, or on a single row), a traction displaces in its direction only. Then a component that is 0 everywhere
+//! takes no time, and its displacement is exactly 0.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -21,14 +21,14 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::threads::Threads;
 
-/// Displacements at the centres.
+/// The offset of displacements at the centres.
 const HERE: (f64, f64) = (0.0, 0.0);
 
-/// Steps by whole elements that lengthen the period by at most one part in this many use the even product: it saves half of the symbol and three
-/// quarters of its set-up.
+/// Steps along x by whole elements use the product of even coefficients if they are at most the length of the grid over this number. That product
+/// needs a longer period, but saves half of the symbol and three quarters of its set-up.
 const LONGER_PERIOD: usize = 8;
 
-/// The operator of one grid.
+/// The product of one grid. T is the precision of the transforms.
 pub struct Toeplitz<T: Real> {
     product: VectorProduct<T>,
     /// The unit of the coefficients, a power of two, for the range of single precision.
@@ -41,13 +41,13 @@ impl<T: Real> Toeplitz<T> {
         Toeplitz::direct(&Quadrant::new(tangential, grid, HERE, threads)?, grid, threads)
     }
 
-    /// The inverse of a circulant near A, with a period one element longer than the grid: a preconditioner. None if the circulant is
-    /// not positive definite.
+    /// Products with the inverse of a circulant near A, a preconditioner. The period of the circulant is at least one element longer than the grid.
+    /// None if the circulant is not positive definite.
     pub fn inverse(tangential: &Tangential, grid: &Grid, threads: &Threads) -> Result<Option<Toeplitz<T>>> {
         Toeplitz::nearly_inverse(&Quadrant::new(tangential, grid, HERE, threads)?, grid, threads)
     }
 
-    /// Products with displacements at `(x, y)` from each centre, in elements.
+    /// Products that return the displacements at the offset `by` from each centre, in elements.
     pub fn displaced(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
         let quadrant = Quadrant::new(tangential, grid, by, threads)?;
         if let Some(n) = whole_step(grid, by) {
@@ -57,19 +57,19 @@ impl<T: Real> Toeplitz<T> {
         Toeplitz::general((&quadrant, by), grid, |x, y| quadrant.displaced(x, y, by), threads)
     }
 
-    /// Products with computed coefficients.
+    /// Products with A, from coefficients that are computed already.
     pub fn direct(quadrant: &Quadrant, grid: &Grid, threads: &Threads) -> Result<Toeplitz<T>> {
         Toeplitz::even(quadrant, grid, 0, threads)
     }
 
-    /// Products of steady rolling: displacements at each centre less those at `(x, y)` from it, in elements.
+    /// Products of steady rolling: displacements at each centre less those at the offset `by` from it, in elements.
     pub fn rolling(quadrant: &Quadrant, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
-        if let Some(own) = quadrant.tangential().uneven() {
+        if let Some(tables) = quadrant.tangential().uneven() {
             let (layer, (step_x, step_y)) = (quadrant.tangential().layer(), (by.0 as i64, by.1 as i64));
-            let between = |x: i64, y: i64| if (x, y) == (0, 0) { layer } else { 0.0 };
+            let of_layer = |x: i64, y: i64| if (x, y) == (0, 0) { layer } else { 0.0 };
             let fill = |x: i64, y: i64| {
-                let (here, there) = (own.whole_at(x, y), own.whole_at(x + step_x, y + step_y));
-                let layer = between(x, y) - between(x + step_x, y + step_y);
+                let (here, there) = (tables.whole_at(x, y), tables.whole_at(x + step_x, y + step_y));
+                let layer = of_layer(x, y) - of_layer(x + step_x, y + step_y);
                 [here[0] - there[0] + layer, here[1] - there[1] + layer, here[2] - there[2]]
             };
             return Toeplitz::general((quadrant, by), grid, fill, threads);
@@ -85,7 +85,7 @@ impl<T: Real> Toeplitz<T> {
         Toeplitz::general((quadrant, by), grid, fill, threads)
     }
 
-    /// Even products, with a period for `more` offsets in x.
+    /// Products with the stored coefficients, Axx and Ayy even, Axy odd. The period has room for `more` further offsets in x.
     fn even(quadrant: &Quadrant, grid: &Grid, more: usize, threads: &Threads) -> Result<Toeplitz<T>> {
         let (given, unit) = ((grid.mx + more, grid.my), unit_of(quadrant.at(0, 0)[0]));
         let coefficients = EvenMatrix {
@@ -98,8 +98,8 @@ impl<T: Real> Toeplitz<T> {
         Ok(Toeplitz { product: VectorProduct::even((grid.mx, grid.my), period, &coefficients, threads)?, unit })
     }
 
-    /// See [`inverse`](Self::inverse). For coatings that are membranes, coefficients cut at half a period may not be positive definite: their inverse
-    /// is made from waves.
+    /// See [`inverse`](Self::inverse). If a coating is a membrane, the circulant of coefficients cut off at half a period may not be positive
+    /// definite. Then the inverse follows from the responses to waves.
     pub fn nearly_inverse(quadrant: &Quadrant, grid: &Grid, threads: &Threads) -> Result<Option<Toeplitz<T>>> {
         let (period, given) = circulant_period(grid);
         if let Some(of_wave) = quadrant.tangential().of_waves().filter(|_| grid.mx > 1 && grid.my > 1) {
@@ -127,7 +127,7 @@ impl<T: Real> Toeplitz<T> {
         Ok(is_positive.into_inner().then_some(Toeplitz { product, unit }))
     }
 
-    /// The inverse of the responses to the waves of a period, by their wave vectors in elements.
+    /// The product with the inverses of the responses `of_wave` to the waves of a period, by their wave vectors in radians per element.
     fn inverse_of_waves(
         quadrant: &Quadrant,
         (grid, (px, py)): (&Grid, (usize, usize)),
@@ -143,7 +143,7 @@ impl<T: Real> Toeplitz<T> {
                 [0, 1, 2].map(|k| sum[k] + mean_x * mean_y * entry[k])
             })
         };
-        // The mean gets the response of the longest waves.
+        // `of_wave` has no value for a uniform traction, the wave number 0. The largest response to the longest waves takes its place.
         let mean = [wave(1, 0), wave(0, 1)].iter().fold(0.0, |most: f64, [xx, yy, _]| most.max(*xx).max(*yy));
         let inverse = |kx: usize, ky: usize| {
             let [xx, yy, xy] = if (kx, ky) == (0, 0) { [mean, mean, 0.0] } else { wave(kx, ky) };
@@ -156,7 +156,7 @@ impl<T: Real> Toeplitz<T> {
         Ok(Toeplitz { product, unit })
     }
 
-    /// Products with coefficients `at(x, y)` of offsets that are neither even nor odd.
+    /// Products with the coefficients `at(x, y)`, which need not be even or odd.
     fn general(
         (quadrant, by): (&Quadrant, (f64, f64)),
         grid: &Grid,
@@ -170,7 +170,7 @@ impl<T: Real> Toeplitz<T> {
             }
         };
         let is_coupled = match quadrant.tangential().uneven() {
-            Some(own) => !own.is_uncoupled(),
+            Some(tables) => !tables.is_uncoupled(),
             None => !quadrant.is_uncoupled(grid, by),
         };
         Ok(Toeplitz { product: VectorProduct::uneven((grid.mx, grid.my), is_coupled, fill, threads)?, unit })
@@ -191,7 +191,7 @@ impl<T: Real> Toeplitz<T> {
         self.product.bytes()
     }
 
-    /// `u = A q`, computed with q in units of `unit`, a power of two.
+    /// Computes `u = A q`. In the transforms q is in units of `unit`, a power of two.
     pub fn apply(&self, q: &[Vector], unit: f64, u: &mut [Vector], memory: &mut Memory<T>) {
         let (mx, my) = self.product.grid();
         assert!(q.len() == mx * my && u.len() == mx * my, "fields of another grid");
@@ -213,7 +213,7 @@ impl<T: Real> Toeplitz<T> {
         self.product.apply(loaded.map(range), load, (pieces, write), memory);
     }
 
-    /// `u = A q` for fields by component in any precision, q times the first of the scales, and u times the second.
+    /// Computes `u = from A (to q)/c` for fields by component, in any precision, where c is the unit of the coefficients.
     pub fn apply_by_component<S: Real>(
         &self,
         q: [&[S]; 2],
@@ -241,31 +241,31 @@ impl<T: Real> Toeplitz<T> {
         self.product.apply(loaded.map(range), load, (x.zip(y), write), memory);
     }
 
-    /// The factors of q and of u for q in units of `unit`.
+    /// The factors `[to, from]` for `u = A q` with q in units of `unit` in the transforms.
     pub fn scales(&self, unit: f64) -> [f64; 2] {
         [1.0 / unit, unit * self.unit]
     }
 }
 
-/// The numbers of wave k of a period and of its longest alias, in radians per element, each with the mean of the wave over an element.
+/// The wave number of wave k of a period and that of its longest alias, in radians per element, each with the mean of the wave over an element.
 fn aliases(k: usize, period: usize) -> [(f64, f64); 2] {
     let half = PI * k as f64 / period as f64;
     let mean = |half: f64| if half == 0.0 { 1.0 } else { half.sin() / half };
     [half, half - PI].map(|half| (2.0 * half, mean(half)))
 }
 
-/// The inverse of a symmetric matrix [xx, yy, xy], and its determinant.
+/// The inverse of a symmetric 2 x 2 matrix `[xx, yy, xy]`, and the determinant of this matrix.
 fn inverted([xx, yy, xy]: [f64; 3]) -> ([f64; 3], f64) {
     let determinant = xx * yy - xy * xy;
     ([yy, xx, -xy].map(|value| value / determinant), determinant)
 }
 
-/// The whole elements of a short step along x; none for other steps.
+/// The number of elements of a step along x, if it is whole and short enough (see [`LONGER_PERIOD`]).
 fn whole_step(grid: &Grid, by: (f64, f64)) -> Option<i64> {
     (by.1 == 0.0 && by.0.fract() == 0.0 && by.0.abs() * LONGER_PERIOD as f64 <= grid.mx as f64).then_some(by.0 as i64)
 }
 
-/// The range of loaded rows: the first, and the one behind the last; the number of rows and 0 if none is loaded.
+/// The first loaded row, and the one after the last. If no row is loaded, they are the number of rows and 0.
 fn rows_with<A>(q: &[A], mx: usize, is_loaded: impl Fn(&A) -> bool) -> (usize, usize) {
     // The fold has no early exit, so that the compiler vectorises it.
     let has_any = |row: &[A]| row.iter().fold(false, |any, q| any | is_loaded(q));
@@ -274,7 +274,7 @@ fn rows_with<A>(q: &[A], mx: usize, is_loaded: impl Fn(&A) -> bool) -> (usize, u
     first.zip(last).map_or((q.len() / mx, 0), |(first, last)| (first, last + 1))
 }
 
-/// The rows as a range, empty if the first is not before the last.
+/// The result of [`rows_with`] as a range, which is empty if no row is loaded.
 fn range((first, last): (usize, usize)) -> Range<usize> {
     first.min(last)..last
 }

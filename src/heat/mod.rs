@@ -1,8 +1,8 @@
-//! Flash temperature: the steady temperature rise of both surfaces by a heat flux through the contact, that of friction.
+//! Flash temperature: the steady rise of the surface temperatures of both bodies by the heat that friction produces in the contact.
 //!
-//! Each body is a half-space whose surface moves past the contact. The heat flux is constant on elements, a part of it goes into body 1 and the
-//! rest into body 2. The part is given, or such that the largest temperatures of both are equal (Blok 1937), if both bodies have a positive rise
-//! somewhere, else one half. A flux below 0 cools.
+//! Each body is a half-space whose surface moves past the contact. The heat flux is constant on each element. A part of it goes into body 1 and the
+//! rest into body 2. The part is given, or it is that for which the largest temperature rises of both bodies are equal (Blok 1937). If a body has no
+//! positive rise, it is one half. A negative flux cools.
 //!
 //! | module | contents |
 //! |---|---|
@@ -17,42 +17,44 @@ use crate::memory::{copied, zeros};
 use crate::operator::Operator;
 use crate::threads::Threads;
 
-/// Rounding errors of a product by FFT, relative to its largest value: some 1e-16 times the logarithm of the grid's size.
+/// A temperature rise below this times the largest absolute one is round-off. The round-off of a product by FFT is some 1e-16 times the logarithm of
+/// the grid's size.
 const NOISE: f64 = 1e-13;
 /// The name of this memory in messages.
 const FIELDS: &str = "the flash temperature";
 
-/// The heat flux, and the bodies.
+/// The heat flux, and the thermal properties and speeds of the bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct Heat<'a> {
-    /// The elements.
+    /// The grid of the flux.
     pub grid: Grid,
-    /// The flux of each element, `[my][mx]`: a power per area; below 0 it cools.
+    /// The heat flux of each element, `[my][mx]`: a power per area. A negative flux cools.
     pub flux: &'a [f64],
-    /// lambda of body 1 and 2: power per length and temperature.
+    /// The thermal conductivity lambda of each body: a power per length and temperature.
     pub conductivity: [f64; 2],
-    /// kappa = lambda/(rho c) of both: area per time.
+    /// The thermal diffusivity kappa = lambda/(rho c) of each body: an area per time.
     pub diffusivity: [f64; 2],
-    /// The speed of each surface in x past the contact: length per time, of any sign.
+    /// The speed of each surface in x relative to the contact: a length per time, of any sign.
     pub speed: [f64; 2],
-    /// The part of the heat that goes into body 1; none: such that the largest temperatures of both are equal.
+    /// The part of the heat that goes into body 1. None: the part for which the largest temperature rises of both bodies are equal.
     pub share: Option<f64>,
 }
 
-/// The temperature rise of the surfaces, above the temperature far away.
+/// The flash temperatures of both surfaces.
 #[derive(Clone, Debug)]
 pub struct Flash {
-    /// The rise of body 1 and 2, `[my][mx]` each.
+    /// The temperature rise of the surface of each body above the temperature far away, `[my][mx]`.
     pub rise: [Vec<f64>; 2],
     /// The part of the heat that goes into body 1.
     pub share: f64,
     /// The largest rise of each body.
     pub largest: [f64; 2],
-    /// The elements of the largest rises.
+    /// The index of the element with the largest rise of each body.
     pub at: [usize; 2],
 }
 
 impl Heat<'_> {
+    /// Refuses numbers out of range, and a flux of another size than the grid.
     fn check(&self) -> Result<()> {
         self.grid.check()?;
         check_values("heat_flux", self.flux, &self.grid, finite)?;
@@ -71,14 +73,14 @@ impl Heat<'_> {
         }
     }
 
-    /// lambda T at element offsets by a unit flux, for a moving body.
+    /// The influence coefficients of body b: lambda times the temperature rise at the offsets between elements, by a unit flux on one element.
     fn table(&self, b: usize, threads: &Threads) -> Result<Table> {
         let Grid { mx, my, dx, dy } = self.grid;
         let (speed, diffusivity) = (self.speed[b], self.diffusivity[b]);
         let reason = || format!("speed[{b}] is {speed:e} with diffusivity[{b}] of {diffusivity:e}");
         let wave = speed.abs() / (2.0 * diffusivity);
         require_range(wave.is_finite(), reason)?;
-        // x downstream.
+        // x is positive downstream.
         let sign = if self.speed[b] < 0.0 { -1.0 } else { 1.0 };
         let mut values: Vec<f64> = zeros(4 * mx * my, FIELDS)?;
         threads.for_each_plain_row(&mut values[2 * mx * my..], 2 * mx, |ky, row| {
@@ -87,19 +89,19 @@ impl Heat<'_> {
                 *value = kernel::of_element((x, ky as f64 * dy), (dx, dy), wave);
             }
         });
-        // Even in y; row -my is never read.
+        // The coefficients are even in y. Those at the offset -my are never read.
         let (below, above) = values.split_at_mut(2 * mx * my);
         for ky in 1..my {
             below[(my - ky) * 2 * mx..][..2 * mx].copy_from_slice(&above[ky * 2 * mx..][..2 * mx]);
         }
-        let own = values[2 * mx * my + mx];
-        // Values that are not finite are due to the speed.
-        let is_within = own > 0.0 && values.iter().all(|value| value.is_finite());
+        let self_influence = values[2 * mx * my + mx];
+        // The speed is the reason if values are not finite.
+        let is_within = self_influence > 0.0 && values.iter().all(|value| value.is_finite());
         require_range(is_within, reason)?;
         Table::new(mx, my, &values, &self.grid)
     }
 
-    /// lambda times the rise of a body with all of the heat.
+    /// lambda times the temperature rise of body b if all of the heat goes into it.
     fn alone(&self, b: usize, threads: &Threads) -> Result<Vec<f64>> {
         let coefficients = Coefficients::from(self.table(b, threads)?);
         let operator = Operator::<f64>::new(&coefficients, &self.grid, threads)?;
@@ -108,7 +110,8 @@ impl Heat<'_> {
         Ok(rise)
     }
 
-    /// The rise of each body with all of the heat. If both have the same speed and diffusivity, one product serves both.
+    /// The temperature rise of each body if all of the heat goes into that body. If both have the same speed and diffusivity, one product serves
+    /// both.
     fn each(&self, threads: &Threads) -> Result<[Vec<f64>; 2]> {
         let first = self.alone(0, threads)?;
         let is_same = self.speed[0] == self.speed[1] && self.diffusivity[0] == self.diffusivity[1];
@@ -125,7 +128,7 @@ impl Heat<'_> {
     }
 }
 
-/// Refuses temperatures that are not finite, with the reason.
+/// Refuses temperatures beyond the range of numbers. `reason` begins the message.
 fn require_range(is_within: bool, reason: impl FnOnce() -> String) -> Result<()> {
     match is_within {
         true => Ok(()),
@@ -133,28 +136,37 @@ fn require_range(is_within: bool, reason: impl FnOnce() -> String) -> Result<()>
     }
 }
 
-/// The flash temperatures of both bodies.
+/// Computes the flash temperatures of both bodies.
 ///
 /// # Errors
-/// `InvalidArgument`, `NotFinite`: numbers out of their range, a flux without one value per element, temperatures that overflow.
+/// `InvalidArgument` or `NotFinite` for numbers out of their range, a flux without one value per element, and temperatures that overflow;
 /// `OutOfMemory`.
 pub fn flash_temperature(heat: &Heat<'_>, threads: &Threads) -> Result<Flash> {
     heat.check()?;
     let threads = &threads.suited_to(heat.grid.len());
     let mut rise = heat.each(threads)?;
-    let top = |rise: &[f64]| {
-        rise.iter().enumerate().fold((0, f64::NEG_INFINITY), |top, (i, t)| if *t > top.1 { (i, *t) } else { top })
+    // The element with the largest rise, and this rise.
+    let hottest = |rise: &[f64]| {
+        rise.iter().enumerate().fold(
+            (0, f64::NEG_INFINITY),
+            |(at, largest), (i, t)| {
+                if *t > largest {
+                    (i, *t)
+                } else {
+                    (at, largest)
+                }
+            },
+        )
     };
-    let tops = [top(&rise[0]), top(&rise[1])];
-    let [first, second] = tops.map(|(_, top)| top);
-    // The transforms leave rounding errors where it is cold.
+    let [(at_first, first), (at_second, second)] = [hottest(&rise[0]), hottest(&rise[1])];
+    // The transforms leave rounding errors where there is no heat.
     let noise = [0, 1].map(|b| NOISE * rise[b].iter().fold(0.0f64, |most, t| most.max(t.abs())));
-    // Without heat the part is arbitrary.
+    // The part for which first * part = second * (1 - part). Without a positive rise there is none, and one half is used.
     let equal = if first > noise[0] && second > noise[1] { 1.0 / (1.0 + first / second) } else { 0.5 };
     let share = heat.share.unwrap_or(equal);
     let parts = [share, 1.0 - share];
     for (rise, part) in rise.iter_mut().zip(parts) {
         rise.iter_mut().for_each(|rise| *rise *= part);
     }
-    Ok(Flash { rise, share, largest: [parts[0] * tops[0].1, parts[1] * tops[1].1], at: [tops[0].0, tops[1].0] })
+    Ok(Flash { rise, share, largest: [parts[0] * first, parts[1] * second], at: [at_first, at_second] })
 }

@@ -1,20 +1,21 @@
-//! Relaxing bodies: Prony series, and one step in time.
+//! Viscoelastic bodies whose stresses relax: Prony series, steps in time, and steady rolling.
 //!
-//! The shear modulus of a body decreases from the instantaneous G, at a constant Poisson ratio:
+//! After a step of strain the shear modulus of a body decreases from the instantaneous G, at a constant Poisson ratio:
 //!
 //! ```text
 //! G(t) = G (1 - sum of r_k (1 - exp(-t/t_k))),   r_k = G_k/G,   sum of r_k <= 1
 //! ```
 //!
-//! Each branch k is a spring and a dashpot in series. With w, the instantaneous displacement of the body (its share of A p), and q_k, the
-//! displacements of the dashpots,
+//! Each branch k is a spring and a dashpot in series. w is the displacement that the present pressures would cause instantaneously (the body's part
+//! of A p), and q_k is the displacement of dashpot k. The displacement u of the body follows from
 //!
 //! ```text
 //! u = w + sum of r_k q_k,     t_k dq_k/dt = u - q_k
 //! ```
 //!
-//! So a step is linear in q, in w before it and in w after it ([`Map`]): an elastic problem with another compliance and a known displacement.
-//! (The same equations with stresses of the branches instead of q: Kaliske & Rothert 1997; for contact: Panek & Kalker 1980.)
+//! So u after a step of time is linear in q, in w before the step and in w after it ([`Map`]). A step is therefore an elastic problem with another
+//! compliance and a known displacement. (Kaliske & Rothert 1997 have the same equations with the stresses of the branches instead of q; for contact
+//! see Panek & Kalker 1980.)
 
 mod map;
 mod modes;
@@ -25,15 +26,15 @@ pub use map::{Form, Map};
 pub use rolling::{rolling_table, RollingBody};
 pub use series::{Series, MOST_BRANCHES};
 
-/// The results of a step in time.
+/// What a step in time reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     /// The time since the bodies were at rest.
     pub time: f64,
-    /// An estimate of the error of the step: the difference between its displacements in contact and those by another
-    /// form of the step, as rms over that of h - approach.
+    /// An estimate of the error of the step: the rms in contact of the difference between its displacements and those by another [form](Form) of the
+    /// step, relative to the rms of h - approach there.
     pub step_error: f64,
-    /// The step errors of all steps since rest, added up as lengths, without decay.
+    /// The sum of the errors of all steps since rest, added as lengths, without decay, and relative as `step_error`.
     pub time_error: f64,
     /// The compliance of the bodies in the step, relative to the instantaneous one.
     pub compliance: f64,

@@ -1,20 +1,21 @@
-//! The creep of a body: the modes of its dashpots under a given w.
+//! The creep of a body: the modes v_i of its dashpots under a given instantaneous displacement w (see [`visco`](super)).
 //!
 //! ```text
 //! t_k dq_k/dt = w + sum of r_l q_l - q_k,    q_k = sum over modes of v_i/(1 - t_k lambda_i),    dv_i/dt = -lambda_i v_i + w/N_i
 //! sum of r_k/(1 - t_k lambda_i) = 1,         N_i = sum of r_k t_k/(1 - t_k lambda_i)^2
 //! ```
 //!
-//! There is one lambda between any two rates `1/t_k`, and one below all rates, which is 0 for a fluid. A root is found as its distance from the
-//! nearer neighbouring rate, by bisection of its bits: all digits of lambda and of `1 - t_k lambda_i` are right.
+//! The rates lambda_i are the roots of the first equation of the second line. There is one lambda between any two neighbouring rates `1/t_k`, and one
+//! below all of these rates, which is 0 for a fluid. The unknown of the search is the distance of lambda from the nearer one of the two rates. It is
+//! bisected in its bits, so that all digits of lambda and of `1 - t_k lambda_i` are right.
 
 use super::series::Series;
 
-/// One mode.
+/// A mode of creep.
 pub struct Mode {
-    /// lambda, a rate >= 0.
+    /// The rate lambda >= 0.
     pub rate: f64,
-    /// `1/(1 - t_k lambda)` of each branch: q by v.
+    /// The ratio of q_k to v for each branch, `1/(1 - t_k lambda)`.
     pub shape: Vec<f64>,
     /// N, a time.
     pub inertia: f64,
@@ -26,26 +27,28 @@ impl Mode {
         (0..series.len()).map(|i| Mode::new(series, i)).collect()
     }
 
-    /// The mode between the rates i - 1 and i, or below the first.
+    /// The mode with a rate between `1/t_(i - 1)` and `1/t_i`, or below `1/t_0` for i = 0.
     fn new(series: &Series, i: usize) -> Mode {
         let Series { fractions, times, .. } = series;
-        let (rate, less) = root(series, i);
-        let shape: Vec<f64> = less.iter().map(|less| 1.0 / less).collect();
+        let (rate, denominators) = root(series, i);
+        let shape: Vec<f64> = denominators.iter().map(|denominator| 1.0 / denominator).collect();
         let inertia = (0..times.len()).map(|k| fractions[k] * times[k] * shape[k] * shape[k]).sum();
         Mode { rate, shape, inertia }
     }
 }
 
-/// A root, and `1 - t_k lambda` of each branch.
+/// The rate lambda of mode i, and the denominators `1 - t_k lambda` of all branches.
 fn root(series: &Series, i: usize) -> (f64, Vec<f64>) {
     let Series { fractions, times, rest } = series;
-    let excess = |less: &[f64]| fractions.iter().zip(less).map(|(r, less)| r / less).sum::<f64>() - 1.0;
-    // Relative to 0: no cancellation if the long-time modulus is small.
+    // The equation of the module, as a function of the denominators.
+    let excess = |denominators: &[f64]| fractions.iter().zip(denominators).map(|(r, d)| r / d).sum::<f64>() - 1.0;
+    // The same equation less its value at lambda = 0, so that nothing cancels if the long-time modulus is small.
     let from_zero = |rate: f64| {
         let term = |(r, t): (&f64, &f64)| r * t * rate / (1.0 - t * rate);
         fractions.iter().zip(times).map(term).sum::<f64>() - rest
     };
-    // lambda = (1 - d)/t_o. Only ratios of times, so that they may have any unit.
+    // The denominators for lambda = (1 - d)/t_o, a rate at the relative distance d from that of branch o. Times enter as ratios, so that they may
+    // have any unit.
     let from =
         |o: usize, d: f64| -> Vec<f64> { times.iter().map(|t| (times[o] - t) / times[o] + t / times[o] * d).collect() };
     if i == 0 {
@@ -69,7 +72,7 @@ fn root(series: &Series, i: usize) -> (f64, Vec<f64>) {
     ((1.0 - d) / times[o], from(o, d))
 }
 
-/// The end of the range with `is_before` between 0 and `most`, to the last bit.
+/// The number between 0 and `most` up to which `is_before` holds, to the last bit.
 fn bisect(most: f64, is_before: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (0u64, most.to_bits());
     while high - low > 1 {

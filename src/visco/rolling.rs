@@ -1,19 +1,21 @@
-//! Coefficients of viscoelastic bodies in steady rolling. Material enters at the leading edge and creeps while it passes.
+//! Influence coefficients of viscoelastic bodies in steady rolling at the speed V along x. Material enters at the leading edge and creeps while it
+//! passes the contact.
 //!
-//! Material at x was at `x + V s` a time s ago. With the creep of a body, `J(t)/J(0) = 1 + sum of c_i (1 - exp(-lambda_i t))` (its
-//! [modes](super::modes): `c_i = 1/(N_i lambda_i)`), and its instantaneous coefficients a,
+//! Material at x was at `x + V s` a time s ago. The creep of a body is `J(t)/J(0) = 1 + sum of c_i (1 - exp(-lambda_i t))`, with `c_i = 1/(N_i
+//! lambda_i)` by its [modes](super::modes). With its instantaneous coefficients a, the coefficients in rolling are
 //!
 //! ```text
 //! a_v(x, y) = a(x, y) + sum of c_i W_i(x, y),       W(x, y) = 1/L integral over s > 0 of exp(-s/L) a(x + s, y),   L = V/lambda
 //! W(x) = 1/L integral over 0 < s < dx of exp(-s/L) a(x + s)  +  exp(-dx/L) W(x + dx)
 //! ```
 //!
-//! a is smooth except at the edges of the element. Intervals end there, and panels get shorter towards them: in the
-//! element's own row down to a fraction of its shorter side, in other rows down to the distance from the edge. That
-//! distance is short if elements are long in x. Lengths are in elements, and times in passages of one element. In
-//! double precision W equals a for times below [`SHORTEST_TIME`], and 0 for times above [`LONGEST_TIME`]. So these two
-//! are the bounds of all times. Element sizes and compliances are split into a number near 1 and a power of two. The
-//! table is multiplied by that power at the end.
+//! a is smooth except at the edges of the loaded element. Intervals of integration end at these edges, and panels get shorter towards them: in the
+//! row of the element down to a fraction of its shorter side, in other rows down to the distance of the row from the edge. That distance is short if
+//! elements are long in x.
+//!
+//! Lengths are in units of dx, and times in units of the time in which an element passes. In double precision W equals a for times below
+//! [`SHORTEST_TIME`], and c_i W is negligible for times above [`LONGEST_TIME`]. So times are clamped to these two. Element sizes and compliances are
+//! split into a number near 1 and a power of two. The table is multiplied by these powers at the end.
 
 use super::modes::Mode;
 use super::series::Series;
@@ -23,49 +25,52 @@ use crate::influence::{integral_at, rule};
 use crate::memory::zeros;
 use crate::powers::{apart, times_power, FADED};
 
-/// Nodes of a panel.
+/// The number of nodes of the Gauss-Legendre rule on a panel.
 const NODES: usize = 12;
-/// The longest panel, in L.
+/// The length of the longest panel, in units of L.
 const LONGEST_PANEL: f64 = 2.0;
-/// For panels near an edge: the distance of the near end from the edge over that of the far end. With this ratio 12
-/// nodes give 14 digits.
+/// For a panel near an edge: the distance of its near end from the edge over that of its far end. With this ratio 12 nodes give 14 digits.
 const PANEL_RATIO: f64 = 0.35;
 /// The last panel at an edge is this fraction of the shorter side of the element. The slope of `a` grows there as a logarithm. The rule integrates it
 /// with an error of 5e-5 of the square of the panel's length.
 const FINEST_PANEL: f64 = 1e-5;
-/// Below this length in elements no value changes.
+/// Panels are not shorter than this length, in units of dx: shorter ones change no digit of the integrals.
 const LEAST_LENGTH: f64 = 1e-17;
-/// Far away a panel is at most this fraction of the distance.
+/// Far away the length of a panel is at most this times the distance.
 const OF_DISTANCE: f64 = 0.5;
-/// Bounds of times as powers of two, in passages of an element. Within the shorter time the slope of `a` has no effect. The longer time exceeds
-/// 1e14 (the slowest mode over its branch's time), times 1e14 (the largest weight of a mode), times 1e16 (all digits): 1e44 < 2^200.
+/// The exponent of 2 of the shortest time, in units of the time in which an element passes. `a` changes too little within a shorter time to matter.
 const SHORTEST_TIME: i32 = -100;
+/// The exponent of 2 of the longest time. It exceeds 1e14 (the slowest mode over its branch's time), times 1e14 (the largest weight of a mode), times
+/// 1e16 (all digits): 1e44 < 2^200.
 const LONGEST_TIME: i32 = 200;
+/// The name of this memory in messages.
 const WHAT: &str = "a row of coefficients";
 
-/// A body: its instantaneous compliance `(1 - nu)/(2 G)`, and its relaxation.
+/// One of two bodies that roll.
 pub struct RollingBody {
-    /// The instantaneous compliance.
+    /// The instantaneous compliance: `(1 - nu)/(2 G)` for normal coefficients, `1/(2 G)` for tangential ones.
     pub compliance: f64,
-    /// The series of its modulus.
+    /// The Prony series of the shear modulus.
     pub series: Series,
 }
 
-/// One term of the coefficients: W times `weight`, with the decay length L in elements. Without L the term is a itself.
+/// One term of the coefficients: `weight` times W, or `weight` times the instantaneous coefficients a.
 pub struct Part {
     weight: f64,
+    /// The length L of W in units of dx; none for a.
     length: Option<f64>,
 }
 
-/// A row of elements. Its N instantaneous coefficients are functions of a continuous offset.
+/// A row of elements, with N instantaneous coefficients as functions of a continuous offset in x.
 pub struct Row<'a, const N: usize> {
-    /// The coefficients at an offset in x.
+    /// The instantaneous coefficients at an offset in x, in units of dx.
     pub at: &'a dyn Fn(f64) -> [f64; N],
     /// The length of panels at the edges of the loaded element: [`finest`].
     pub finest: f64,
 }
 
-/// The length of panels at the edges of the loaded element in a row ky away, for elements of width dy.
+/// The length of the shortest panels, those at the edges of the loaded element, in a row that is ky rows away, for elements of the width dy. Both
+/// lengths are in units of dx.
 pub fn finest(ky: usize, dy: f64) -> f64 {
     match ky {
         0 => (FINEST_PANEL * dy.min(1.0)).max(LEAST_LENGTH),
@@ -89,7 +94,7 @@ impl<const N: usize> Row<'_, N> {
         sum.map(|sum| d / length * sum)
     }
 
-    /// [`panel`](Self::panel) for an interval, in panels that are short compared with L.
+    /// As [`panel`](Self::panel), for an interval that is cut into panels of at most [`LONGEST_PANEL`].
     fn interval(&self, kx: f64, (from, to): (f64, f64), length: f64) -> [f64; N] {
         let to = to.min(FADED * length);
         if !(to > from) {
@@ -101,7 +106,7 @@ impl<const N: usize> Row<'_, N> {
         (0..panels as usize).fold([0.0; N], |sum, k| plus(sum, 1.0, panel(k)))
     }
 
-    /// The integral from an offset to the next.
+    /// The same integral from the offset kx to kx + 1: the first term in the recursion of W.
     fn element(&self, kx: i64, length: f64) -> [f64; N] {
         let (x, mut sum, mut far) = (kx as f64, [0.0; N], 0.5);
         let between = |far: f64, near: f64| {
@@ -116,7 +121,7 @@ impl<const N: usize> Row<'_, N> {
         plus(sum, 1.0, between(far, 0.0))
     }
 
-    /// W at an offset, by integration to the end.
+    /// W at the offset kx, by integration up to the distance where `exp(-s/L)` has faded.
     fn tail(&self, kx: i64, length: f64) -> [f64; N] {
         let (mut sum, mut s) = ([0.0; N], 0.0);
         while s < FADED * length {
@@ -127,7 +132,7 @@ impl<const N: usize> Row<'_, N> {
         sum
     }
 
-    /// Adds a term at the offsets `-cx..=cx`.
+    /// Adds a term of the coefficients at the offsets `-cx..=cx` to `out`.
     pub fn add(&self, part: &Part, cx: usize, out: &mut [[f64; N]]) {
         let Some(length) = part.length else {
             let at = |k: usize| (self.at)(k as f64 - cx as f64);
@@ -145,7 +150,7 @@ impl<const N: usize> Row<'_, N> {
     }
 }
 
-/// The series with its times in passages of an element.
+/// The series with its times in units of the time in which an element passes, clamped to their bounds.
 fn by_elements(series: &Series, dx: f64, speed: f64) -> Option<Series> {
     let ((d, of_d), (v, of_v)) = (apart(dx), apart(speed.abs()));
     let passing = |t: &f64| {
@@ -157,7 +162,8 @@ fn by_elements(series: &Series, dx: f64, speed: f64) -> Option<Series> {
     Series::new(1.0, &series.fractions, &times)
 }
 
-/// The terms of body `b`, with compliances in units of `2^power`. Rejects bodies that creep for ever.
+/// The terms of the coefficients of body `b`, with compliances in units of `2^power`. Refuses bodies without a long-time modulus, which creep for
+/// ever.
 pub fn parts(b: usize, body: &RollingBody, power: i32, dx: f64, speed: f64) -> Result<Vec<Part>> {
     let mut parts = Vec::new();
     let compliance = times_power(body.compliance, -power);
@@ -184,7 +190,7 @@ pub fn parts(b: usize, body: &RollingBody, power: i32, dx: f64, speed: f64) -> R
     Ok(parts)
 }
 
-/// Checks the inputs of a table. Returns the largest compliance.
+/// Checks the arguments of a table. Returns the larger compliance of the two bodies.
 pub fn check((cx, cy): (usize, usize), (dx, dy): (f64, f64), bodies: &[RollingBody; 2], speed: f64) -> Result<f64> {
     require(speed.is_finite() && speed != 0.0, "speed", speed, "it must be finite, and not 0")?;
     if cx == 0 || cy == 0 {
@@ -197,15 +203,15 @@ pub fn check((cx, cy): (usize, usize), (dx, dy): (f64, f64), bodies: &[RollingBo
     Ok(most)
 }
 
-/// The reason that a message names for invalid coefficients.
+/// The part of a message that tells why a coefficient is invalid.
 pub const OUT_OF_RANGE: &str = "element sizes, moduli and times take it out of the range of numbers";
 
-/// The coefficients of two bodies in steady rolling, as a table of the offsets `-cx..cx` by `-cy..cy`. They roll towards +x for a positive
-/// speed, towards -x for a negative one.
+/// Computes the normal coefficients of two bodies in steady rolling, a table of the offsets `-cx..cx` by `-cy..cy`. The bodies roll towards +x if the
+/// speed is positive, towards -x if it is negative.
 ///
 /// # Errors
-/// `InvalidArgument`, `NotFinite`: invalid sizes, a speed of 0, coefficients beyond the range of numbers. `Unsupported`: a body that creeps for
-/// ever. `OutOfMemory`.
+/// `InvalidArgument` or `NotFinite` for invalid sizes, a speed of 0, or coefficients beyond the range of numbers; `Unsupported` for a body that
+/// creeps for ever; `OutOfMemory`.
 pub fn rolling_table(
     (cx, cy): (usize, usize),
     (dx, dy): (f64, f64),
@@ -220,19 +226,19 @@ pub fn rolling_table(
     let mut row: Vec<[f64; 1]> = zeros(2 * cx + 1, WHAT)?;
     for ky in 0..=cy {
         row.fill([0.0]);
-        let element = (d, times_power(dy, -of_d));
-        let at = |kx: f64| [integral_at((kx.abs(), ky as f64), element)];
-        let of = Row { at: &at, finest: finest(ky, element.1 / d) };
-        of_bodies.iter().for_each(|part| of.add(part, cx, &mut row));
+        let width = times_power(dy, -of_d);
+        let at = |kx: f64| [integral_at((kx.abs(), ky as f64), (d, width))];
+        let elements = Row { at: &at, finest: finest(ky, width / d) };
+        of_bodies.iter().for_each(|part| elements.add(part, cx, &mut row));
         if speed < 0.0 {
             row.reverse();
         }
         for [value] in &mut row {
             *value = times_power(*value / std::f64::consts::PI, of_d + of_compliance);
-            let is_one = value.is_normal() && *value > 0.0;
-            require(is_one, "a coefficient", *value, OUT_OF_RANGE)?;
+            let is_in_range = value.is_normal() && *value > 0.0;
+            require(is_in_range, "a coefficient", *value, OUT_OF_RANGE)?;
         }
-        // Even in y.
+        // The coefficients are even in y.
         for iy in [cy.checked_sub(ky), Some(cy + ky)].into_iter().flatten().filter(|iy| *iy < 2 * cy) {
             table[iy * 2 * cx..][..2 * cx].iter_mut().zip(&row).for_each(|(value, [at])| *value = *at);
         }

@@ -1,27 +1,28 @@
-//! A Prony series, sorted by time.
+//! The Prony series of a viscoelastic body, sorted by time.
 
-/// Most branches of a body.
+/// The largest number of branches of a body.
 pub const MOST_BRANCHES: usize = 32;
 
-/// Relative round-off of a sum of moduli: [`MOST_BRANCHES`] additions, 32 EPSILON = 7e-15.
+/// Sums of moduli are equal if they differ by at most this times G. The round-off of [`MOST_BRANCHES`] additions is 32 EPSILON = 7e-15.
 const ROUNDING: f64 = 1e-14;
-/// Relative difference below which times are equal.
+/// Branches whose times differ by at most this, relative to the longer time, become one branch.
 const EQUAL_TIMES: f64 = 1e-9;
 
-/// `r_k` and `t_k`, the longest time first, all of them positive, no two times equal to nine digits.
+/// The branches of a body, the one with the longest time first. All moduli and times are positive, and no two times are equal to nine digits.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
-    /// `r_k`.
+    /// The moduli of the branches relative to the instantaneous modulus, `r_k = G_k/G`.
     pub fractions: Vec<f64>,
-    /// `t_k`.
+    /// The relaxation times `t_k`.
     pub times: Vec<f64>,
-    /// `1 - sum of r_k`: the long-time modulus, relative; 0: a fluid.
+    /// The long-time modulus relative to the instantaneous one, `1 - sum of r_k`. It is 0 for a fluid.
     pub rest: f64,
 }
 
 impl Series {
-    /// Branches of these moduli and times of a body of instantaneous modulus G. None if they add up to more than G.
+    /// Sorts and joins the branches of a body with the instantaneous modulus G. None if their moduli add up to more than G.
     pub fn new(g: f64, modulus: &[f64], time: &[f64]) -> Option<Series> {
+        // Smaller moduli are lost in the sum with G.
         let counts = |modulus: f64| modulus > f64::EPSILON * g;
         let mut branches: Vec<(f64, f64)> = time
             .iter()
@@ -29,7 +30,7 @@ impl Series {
             .filter(|(_, modulus)| counts(**modulus))
             .map(|(t, modulus)| (*t, modulus / g))
             .collect();
-        branches.sort_by(|a, b| b.0.total_cmp(&a.0));
+        branches.sort_by(|(one, _), (other, _)| other.total_cmp(one));
         let mut series = Series { rest: 1.0, ..Series::default() };
         for (t, r) in branches {
             series.rest -= r;
@@ -50,7 +51,7 @@ impl Series {
         Some(series)
     }
 
-    /// Whether bodies of both series relax alike, to the round-off of their moduli and times.
+    /// Whether bodies of this series and of the other one relax in the same way, up to the round-off of their moduli and times.
     pub fn is_like(&self, other: &Series) -> bool {
         let are = |a: &[f64], b: &[f64], near: fn(f64, f64) -> bool| {
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| near(*a, *b))
@@ -60,12 +61,12 @@ impl Series {
             && (self.rest == 0.0) == (other.rest == 0.0)
     }
 
-    /// Number of branches.
+    /// The number of branches.
     pub fn len(&self) -> usize {
         self.times.len()
     }
 
-    /// Whether the body is elastic.
+    /// Whether there are no branches, so that the body is elastic.
     pub fn is_empty(&self) -> bool {
         self.times.is_empty()
     }

@@ -1,47 +1,47 @@
-//! The fields of a block of elements of C.
+//! The fields of the iteration on one block of elements of C.
 
-/// The number of fields.
+/// The number of fields of one component.
 pub const FIELDS: usize = 23;
 
-/// A field of both components.
+/// The x and y components of a field.
 type Both<'a> = [&'a mut [f64]; 2];
 
 /// The fields of one block, stored consecutively.
 pub struct Fields<'a> {
-    /// g.
+    /// The traction bound g.
     pub bound: &'a mut [f64],
-    /// The compliance of a layer beyond its least one.
+    /// The compliance of a layer between the bodies, less its least one.
     pub excess: &'a mut [f64],
-    /// D.
+    /// The curvature D of the circle.
     pub curvature: &'a mut [f64],
-    /// w.
+    /// The slip w without the displacement u.
     pub slip: Both<'a>,
     pub q: Both<'a>,
     pub u: Both<'a>,
-    /// n, 0 on stick.
+    /// The normal n of the circle on slip; 0 on stick.
     pub normal: Both<'a>,
-    /// `P(-s)`.
+    /// The projected residual `P(-s)`.
     pub projected: Both<'a>,
-    /// The preconditioned residual, or the field to be multiplied.
+    /// The preconditioned residual, the input of a product, or that of the preconditioner.
     pub z: Both<'a>,
-    /// t.
+    /// The search direction t.
     pub direction: Both<'a>,
-    /// The chord of t at the length of the forecast.
+    /// The chord of t at the forecast length f.
     pub chord: Both<'a>,
-    /// A times the chord and the deferred corrections.
+    /// The product of A with the chord plus the deferred corrections over f.
     pub product: Both<'a>,
-    /// The deferred corrections.
+    /// The deferred corrections: the changes of q of which u does not contain the displacement.
     pub deferred: Both<'a>,
 }
 
 impl<'a> Fields<'a> {
-    /// The fields in the values of a block.
+    /// Cuts the values of a block, `[field][element]`, into its fields.
     pub fn of(values: &'a mut [f64]) -> Fields<'a> {
         let length = values.len() / FIELDS;
         let mut rest = values;
         let mut one = || {
-            let (field, behind) = std::mem::take(&mut rest).split_at_mut(length);
-            rest = behind;
+            let (field, after) = std::mem::take(&mut rest).split_at_mut(length);
+            rest = after;
             field
         };
         let [bound, excess, curvature] = [one(), one(), one()];

@@ -1,4 +1,5 @@
-//! The passes of an iteration over a block, in vectors of this machine.
+//! The passes of an iteration over one block, in SIMD vectors. [`shift`](super::super::shift) has the formulas. In the names of fields `n` is the
+//! normal, `r` the projected residual, `p` the product, `t` the direction, `c` the chord, `l` the deferred corrections; `x` and `y` are components.
 
 use pulp::{Simd, WithSimd};
 
@@ -7,7 +8,7 @@ use super::super::pairs::{add, choose, dot, pass, plus, scaled, subtract};
 use super::fields::Fields;
 use crate::lanes::Lanes;
 
-/// Predicts the elements in slip. Returns the squares of the residual slip and of u. z becomes the input of the preconditioner.
+/// Predicts the elements in slip, and sets z to the input of the preconditioner. Returns the sums of squares of the residual slip and of u.
 pub struct Predict<'a, 'b> {
     pub fields: &'a mut Fields<'b>,
     pub units: Units,
@@ -38,7 +39,8 @@ impl WithSimd for Predict<'_, '_> {
     }
 }
 
-/// Computes the preconditioned residual z from the preconditioner's output, and the sum of `z.(A + D) t` with the last direction.
+/// Computes the preconditioned residual z. On entry z is the output of the circulant. Returns the sum of `z.(A + D) t`, where t is the last
+/// direction.
 pub struct Precondition<'a, 'b> {
     pub fields: &'a mut Fields<'b>,
     pub units: Units,
@@ -57,26 +59,27 @@ impl WithSimd for Precondition<'_, '_> {
             [curvature, excess, nx, ny, rx, ry, px, py, tx, ty],
             [zx, zy],
             #[inline(always)]
-            |[bend, excess, nx, ny, rx, ry, px, py, tx, ty], z| {
-                let stiff = bend + excess;
-                let mixing = disc.mixing(stiff);
-                let within = disc.project([nx, ny], scaled(mixing, z));
-                let z = plus(within, disc.own(mixing, stiff), [rx, ry]);
-                (z, [dot(z, plus([px, py], bend, [tx, ty]))])
+            |[curvature, excess, nx, ny, rx, ry, px, py, tx, ty], z| {
+                let diagonal = curvature + excess;
+                let mixing = disc.mixing(diagonal);
+                let by_circulant = disc.project([nx, ny], scaled(mixing, z));
+                let z = plus(by_circulant, disc.diagonal_inverse(mixing, diagonal), [rx, ry]);
+                (z, [dot(z, plus([px, py], curvature, [tx, ty]))])
             },
         )
     }
 }
 
-/// Computes the direction t and its chord at the length f. z is the chord with the deferred corrections.
-pub struct Direct<'a, 'b> {
+/// Computes the direction t and its chord at the length f, the change of q by a step of this length over f. Sets z to the input of the product: the
+/// chord plus the deferred corrections over f.
+pub struct ChooseDirection<'a, 'b> {
     pub fields: &'a mut Fields<'b>,
     pub units: Units,
     pub beta: f64,
     pub f: f64,
 }
 
-impl WithSimd for Direct<'_, '_> {
+impl WithSimd for ChooseDirection<'_, '_> {
     type Output = [f64; 0];
 
     #[inline(always)]
@@ -103,7 +106,7 @@ impl WithSimd for Direct<'_, '_> {
     }
 }
 
-/// Computes the sums of `t.(A + D) t` and of `t` times the projected residual, with the chord in place of t on stick.
+/// Returns the sums of `t.(A + D) t` and of the product of t and the projected residual, with the chord in place of t on stick.
 pub struct Energy<'a, 'b> {
     pub fields: &'a mut Fields<'b>,
     pub units: Units,
@@ -122,31 +125,34 @@ impl WithSimd for Energy<'_, '_> {
             [curvature, nx, ny, rx, ry, tx, ty, cx, cy, px, py],
             [],
             #[inline(always)]
-            |[bend, nx, ny, rx, ry, tx, ty, cx, cy, px, py], []| {
-                let along = choose(disc.slips([nx, ny]), [tx, ty], [cx, cy]);
-                let energy = dot(along, [px, py]) + bend * dot(along, along);
-                ([], [energy, dot([rx, ry], along)])
+            |[curvature, nx, ny, rx, ry, tx, ty, cx, cy, px, py], []| {
+                let t = choose(disc.slips([nx, ny]), [tx, ty], [cx, cy]);
+                let energy = dot(t, [px, py]) + curvature * dot(t, t);
+                ([], [energy, dot([rx, ry], t)])
             },
         )
     }
 }
 
-/// Moves along the chord at the length f and predicts the elements in slip there. Returns the squares of the residual slip, of u, of the deferred
-/// corrections and of the changes of tractions. z becomes the input of the preconditioner.
-pub struct Go<'a, 'b> {
+/// Makes a step of this length: q moves along the curve, u along the product, whose chord has the length f. The difference becomes a deferred
+/// correction. Predicts the elements in slip, and sets z to the input of the preconditioner. Returns the sums of squares of the residual slip, of u,
+/// of the deferred corrections and of the change of q.
+pub struct Step<'a, 'b> {
     pub fields: &'a mut Fields<'b>,
     pub units: Units,
     pub length: f64,
     pub f: f64,
 }
 
-impl WithSimd for Go<'_, '_> {
+impl WithSimd for Step<'_, '_> {
     type Output = [f64; 4];
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [f64; 4] {
         let disc = Disc::new(simd, &self.units);
-        let (length, left) = (Lanes::splat(simd, self.length), Lanes::splat(simd, 1.0 - self.length / self.f));
+        // The product includes this share of the deferred corrections: length/f.
+        let (length, still_deferred) =
+            (Lanes::splat(simd, self.length), Lanes::splat(simd, 1.0 - self.length / self.f));
         let Fields { bound, excess, slip: [wx, wy], chord: [cx, cy], product: [px, py], .. } = self.fields;
         let Fields { q: [qx, qy], u: [ux, uy], normal: [nx, ny], direction: [tx, ty], .. } = self.fields;
         let Fields { curvature, projected: [rx, ry], deferred: [lx, ly], z: [zx, zy], .. } = self.fields;
@@ -161,20 +167,20 @@ impl WithSimd for Go<'_, '_> {
                 let t = choose(slips, [tx, ty], chord);
                 let new = disc.moved((slips, n), g, q, scaled(length, t));
                 let straight = plus(q, length, chord);
-                let late = plus(subtract(new, straight), left, [lx, ly]);
-                let way = subtract(new, q);
+                let [lx, ly] = plus(subtract(new, straight), still_deferred, [lx, ly]);
+                let change = subtract(new, q);
                 let u = plus([ux, uy], length, [px, py]);
                 let predicted = disc.predict(new, add([wx, wy], u), g);
                 let z = scaled(disc.mixing(predicted.curvature + excess), predicted.projected);
-                let (bend, [nx, ny], [rx, ry]) = (predicted.curvature, predicted.normal, predicted.projected);
-                let sums = [predicted.rest, dot(u, u), dot(late, late), dot(way, way)];
-                ([new[0], new[1], u[0], u[1], nx, ny, t[0], t[1], late[0], late[1], bend, rx, ry, z[0], z[1]], sums)
+                let (curvature, [nx, ny], [rx, ry]) = (predicted.curvature, predicted.normal, predicted.projected);
+                let sums = [predicted.rest, dot(u, u), dot([lx, ly], [lx, ly]), dot(change, change)];
+                ([new[0], new[1], u[0], u[1], nx, ny, t[0], t[1], lx, ly, curvature, rx, ry, z[0], z[1]], sums)
             },
         )
     }
 }
 
-/// Adds z to u.
+/// Adds z, the product with the deferred corrections, to u.
 pub struct AddProduct<'a, 'b> {
     pub fields: &'a mut Fields<'b>,
 }

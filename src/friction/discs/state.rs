@@ -1,4 +1,4 @@
-//! Copies between the fields on C and a state on the grid.
+//! Copies a problem and its state from the grid to the fields on C, and the state back.
 
 use super::super::beside::{count_near, extension_on};
 use super::super::disc::Units;
@@ -17,11 +17,11 @@ use crate::operator::fft::Real;
 const MEMORY: &str = "the iteration on discs";
 
 impl<T: Real> Discs<T> {
-    /// Allocates memory and copies a state.
+    /// Allocates memory, chooses the units, and copies the problem and its state to the fields.
     pub fn load(&mut self, problem: &Problem, state: &State) -> Result<()> {
         let (places, all, threads) = (&problem.places, problem.grid.len(), problem.threads());
         unwritten(&mut self.fields, FIELDS * places.length(), f64::NAN, MEMORY, threads)?;
-        for field in self.given.iter_mut().chain(&mut self.answer) {
+        for field in self.input.iter_mut().chain(&mut self.output) {
             unwritten(field, all, T::nan(), MEMORY, threads)?;
         }
         if self.extension.is_none() {
@@ -29,14 +29,14 @@ impl<T: Real> Discs<T> {
         }
         count_near(&mut self.extension, &problem.bound);
         let (a0, bound, slip) = (problem.operators.self_influence, problem.rms_bound(), problem.rms_slip());
-        let cap = 0.3 / (a0 * (problem.count().max(1) as f64).sqrt());
-        let rho = rho_of((bound, slip), cap);
+        let largest_rho = 0.3 / (a0 * (problem.count().max(1) as f64).sqrt());
+        let rho = rho_of((bound, slip), largest_rho);
         let (traction, unit) = (unit_of(bound.min(slip / a0)), problem.operators.unit());
         self.units = Units { traction, displacement: traction * unit, a0: a0 / unit, rho: rho * unit };
         let by = 1.0 / self.units.displacement;
-        let [x, y] = &mut self.given;
-        let given = places.cut_grid(x).zip(places.cut_grid(y));
-        let blocks = places.parts().zip(places.cut(&mut self.fields, FIELDS)).zip(given);
+        let [x, y] = &mut self.input;
+        let input = places.cut_grid(x).zip(places.cut_grid(y));
+        let blocks = places.parts().zip(places.cut(&mut self.fields, FIELDS)).zip(input);
         over(threads, blocks, |_, ((part, values), (x, y))| {
             values.fill(0.0);
             x.fill(T::zero());
@@ -51,12 +51,12 @@ impl<T: Real> Discs<T> {
             }
             []
         });
-        self.take(problem, state);
+        self.copy_from(problem, state);
         Ok(())
     }
 
-    /// Copies q and u of a state, with no deferred corrections.
-    pub fn take(&mut self, problem: &Problem, state: &State) {
+    /// Copies q and u of a state to the fields, and sets the deferred corrections to 0.
+    pub fn copy_from(&mut self, problem: &Problem, state: &State) {
         let Units { traction, displacement, .. } = self.units;
         let (places, to_q, to_u) = (&problem.places, 1.0 / traction, 1.0 / displacement);
         let blocks = places.parts().zip(places.cut(&mut self.fields, FIELDS));
@@ -71,8 +71,8 @@ impl<T: Real> Discs<T> {
         });
     }
 
-    /// Copies q and u to a state.
-    pub fn give(&mut self, problem: &Problem, state: &mut State) {
+    /// Copies q and u from the fields to a state.
+    pub fn copy_to(&mut self, problem: &Problem, state: &mut State) {
         let Units { traction, displacement, .. } = self.units;
         let places = &problem.places;
         let states = places.cut_grid(&mut state.q).zip(places.cut_grid(&mut state.u));

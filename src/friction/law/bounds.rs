@@ -1,4 +1,4 @@
-//! Traction bounds that follow from slips by a law, and the residuals with these bounds.
+//! The traction bounds of all elements from their slips by a law, and the residuals with these bounds.
 
 use super::super::certificate::{scale, Certificate};
 use super::super::plane::{clip, dot, square};
@@ -9,21 +9,22 @@ use super::march::March;
 use super::RISING;
 use crate::methods::fields;
 
-/// Updates the bounds from the slips of elements that slipped in the last step.
+/// Computes the bounds from the present slips of elements that the tangent predicts to slip. The other bounds are those at rest.
 pub(super) fn lag(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) {
     follow(problem, state, tangent, march, None);
 }
 
-/// [`lag`]; with rho, a rising bound g follows from `g(slip') + rho slip' = |q| + rho slip`.
+/// As [`lag`]. With rho, a bound g that rises with the slip is computed at the slip' at which `g(slip') + rho slip' = |q| + rho slip`: as the bound
+/// rises, the slip becomes smaller.
 pub(super) fn follow(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March, rho: Option<f64>) {
     let law = march.law;
     let mut bound = std::mem::take(&mut problem.bound);
-    march.go(|k, place, had| {
+    march.go(|k, place, before| {
         let slips = place.pressure > 0.0 && tangent.side[k] == Side::Slip;
         let slip = if slips { square(problem.slip_at(k, &state.u)).sqrt() } else { 0.0 };
-        let mut response = law.at(slip, place, had);
+        let mut response = law.at(slip, place, before);
         if let Some(rho) = rho.filter(|_| place.pressure > 0.0 && response.slope[0] > 0.0) {
-            response = law.resolve(square(state.q[k]).sqrt() + rho * slip, rho, place, had).response;
+            response = law.resolve(square(state.q[k]).sqrt() + rho * slip, rho, place, before).response;
         }
         bound[k] = response.bound;
         response.particle
@@ -31,8 +32,8 @@ pub(super) fn follow(problem: &mut Problem, state: &State, tangent: &Tangent, ma
     problem.bound = bound;
 }
 
-/// The larger one of the residuals of the slips and of the bounds. Where elements slip: the slip across q, or all of it if it is not opposite to q, and
-/// `|q| - g`. Where they stick: the slip, and `|q|` beyond g.
+/// The larger one of the residuals of the slips and of the bounds. Where elements slip: the slip across q, or all of it if it is not opposite to q,
+/// and `|q| - g`. Where they stick: the slip, and `|q|` beyond g.
 pub(super) fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 {
     let of = |k: usize| {
         let (q, g) = (state.q[k], problem.bound[k]);
@@ -57,8 +58,8 @@ pub(super) fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 
     slips.max(bounds)
 }
 
-/// Moves tractions onto their circles, with a fresh product for a certificate. If bounds rise steeply tractions are unchanged: a move to the circles
-/// would change the slips, and bounds by more than the move.
+/// Moves tractions onto their circles, and computes their displacements by a fresh product, for a certificate. If bounds rise steeply, tractions are
+/// left unchanged: a move to the circles would change the slips, and by them the bounds by more than the move.
 pub(super) fn settle(problem: &mut Problem, state: &mut State, tangent: &Tangent, march: &March) {
     match march.rises > RISING {
         true => problem.refresh_unclipped(state),
@@ -66,7 +67,8 @@ pub(super) fn settle(problem: &mut Problem, state: &mut State, tangent: &Tangent
     }
 }
 
-/// Moves slipping elements onto their circles and keeps sticking ones inside, with a fresh product.
+/// Moves the tractions of slipping elements onto their circles, projects those of sticking ones onto their discs, and computes the displacements by a
+/// fresh product.
 pub(super) fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &Tangent) {
     let (bound, threads) = (&problem.bound, problem.threads().clone());
     fields::map(&threads, &mut state.q, |k, q| match tangent.side[k] {
@@ -82,26 +84,26 @@ pub(super) fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &T
     problem.refresh_unclipped(state);
 }
 
-/// Clips tractions to p times the largest coefficient that a particle can have: that at rest or, with memory, the one that it brings. A fresh product
-/// follows if any was longer.
+/// Clips tractions to p times the largest coefficient that a particle can have: that at rest or, with a memory, that before the step if it is larger.
+/// If any traction was longer, a fresh product follows.
 fn clip_to_largest(problem: &mut Problem, state: &mut State, march: &mut March) {
     let has_memory = march.law.fall.is_some_and(|law| law.memory_distance > 0.0);
     let mut is_clipped = false;
-    march.go(|k, place, had| {
-        let coefficient = if has_memory { place.coefficient.max(had.coefficient) } else { place.coefficient };
+    march.go(|k, place, before| {
+        let coefficient = if has_memory { place.coefficient.max(before.coefficient) } else { place.coefficient };
         let largest = place.pressure * coefficient;
         if square(state.q[k]).sqrt() > largest {
             (state.q[k], is_clipped) = (clip(state.q[k], largest), true);
         }
-        Particle { coefficient, ..had }
+        Particle { coefficient, ..before }
     });
     if is_clipped {
         problem.refresh_unclipped(state);
     }
 }
 
-/// Clips tractions to their largest bounds. Sets the bounds of slipping elements to their |q|, and raises those of
-/// sticking elements to it. Returns the larger of the residuals of the slips and of the bounds.
+/// Finishes a solve: clips tractions to their largest bounds, sets the bounds of slipping elements to their |q|, and raises those of sticking
+/// elements to their |q| if that is larger. Returns the larger of the residuals of the slips and of the bounds.
 pub(super) fn freeze(problem: &mut Problem, state: &mut State, tangent: &Tangent, march: &mut March) -> f64 {
     clip_to_largest(problem, state, march);
     lag(problem, state, tangent, march);

@@ -1,16 +1,18 @@
 //! The two stages of a solve with a law.
 //!
-//! 1. lagged: before each Newton step with fixed bounds, the bounds of slipping elements are updated from the slips of the step before;
-//! 2. below a residual of [`NEWTON_RESIDUAL`], Newton's method with the derivatives of the bounds
-//!    ([`system`](super::system)); without progress a few lagged steps follow.
+//! 1. Lagged steps: the bounds are computed from the slips of the step before, then a Newton step with these fixed bounds follows.
+//! 2. Newton steps with the derivatives of the bounds ([`system`](super::system)), below a residual of [`NEWTON_RESIDUAL`]. If such a step makes no
+//!    progress, a few lagged steps follow.
 //!
-//! With given forces both steps are bordered by the creepages. The iteration then begins with the solution of Coulomb's law, the least
-//! creepage that carries the forces.
+//! With given forces the linear systems of both stages are bordered by the creepages. The iteration then starts from the solution of Coulomb's law,
+//! with the least creepage that carries the forces.
 //!
-//! If a layer hardens or softens, or bounds rise steeply by a memory of lower bounds, bounds must not lag. Then all steps are Newton's.
+//! If a layer hardens or softens, or if bounds rise steeply because particles remember lower bounds, lagged steps would alternate. Then all steps are
+//! those of the second stage.
 //!
-//! The result lies on its circles (unless bounds rise steeply), with a fresh product. It has two certificates: that of the conditions with
-//! fixed bounds `g = |q|`, and `R_g = rms(|q| - g(slip))/rms g(0)` over the slip area, by a march with the slips of that product.
+//! The tractions of the result lie on their circles (unless bounds rise steeply), and their displacements are a fresh product. The result has two
+//! residuals: that of Coulomb's conditions with the bounds `g = |q|` on slip, and that of the bounds, the rms over C of `|q| - g(slip)` on slip over
+//! the rms of g, where g(slip) follows from the slips of that product.
 
 use super::super::best::Best;
 use super::super::forces::Forces;
@@ -28,36 +30,44 @@ use crate::error::Result;
 use crate::methods::fields::Fields;
 use crate::progress::Outcome;
 
-/// Residual below which steps are Newton's.
+/// Below this residual steps are Newton steps with the derivatives of the bounds.
 pub const NEWTON_RESIDUAL: f64 = 1e-2;
-/// A Newton step must make [`PROGRESS`]; if not, LAGGED_STEPS lagged steps follow.
+/// So many lagged steps follow if a Newton step does not reduce the residual below [`PROGRESS`] times the least one.
 const LAGGED_STEPS: u32 = 5;
-/// Relative residual of linear solves, of Newton steps and of lagged ones.
+/// The relative residual at which the linear solve of a Newton step ends.
 const INNER: f64 = 0.2;
+/// The same for a lagged step.
 const INNER_LAGGED: f64 = 0.35;
-/// rho of the natural map in Newton steps, over the inverse of an element's influence on itself: more than the largest slope of a bound, so
-/// that each element has one state. 4 takes 15 to 24 products, 2 takes 15 to 36 (192 x 176 elements to 1e-6).
+/// rho of the natural map in Newton steps with a law, times an element's influence on itself. rho exceeds the largest slope of a bound, so that each
+/// element has one state. With 4 solves take 15 to 24 products, with 2 they take 15 to 36 (192 x 176 elements to 1e-6).
 const RHO: f64 = 4.0;
-/// Steps without a residual below GAIN times the least, after which the iteration ends.
+/// The iteration ends as stagnated after more than this many steps without a residual below [`GAIN`] times the least one.
 const PATIENCE: u32 = 15;
+/// See [`PATIENCE`].
 const GAIN: f64 = 0.9;
 
 /// The progress of the steps.
 struct Course {
+    /// The least residual so far.
     least: f64,
+    /// The number of steps since the residual fell below [`GAIN`] times the least one.
     since: u32,
-    held: u32,
+    /// The number of lagged steps that still follow before the next Newton step.
+    lagged_steps: u32,
+    /// Whether the last step was a Newton step.
     was_newton: bool,
+    /// Whether bounds must not lag, so that all steps are Newton steps.
     hardens: bool,
 }
 
-/// The outcome, and the larger of both certificates' residuals.
+/// How a solve ended.
 pub struct Ended {
     pub outcome: Outcome,
+    /// The larger of the two residuals of the module.
     pub residual: f64,
 }
 
-/// Iterates from the state. `has_slipped` tells whether the state has a slip area. Otherwise no element has slipped yet.
+/// Iterates from the given state. `has_slipped` tells whether the first slip area is predicted from the state. Otherwise no element slips at first.
 pub fn solve(
     problem: &mut Problem,
     state: &mut State,
@@ -98,7 +108,7 @@ fn iterate(
     let (made, cap) = (problem.operators.products, 1.0 / compliance(problem));
     // The bound of a layer that hardens or softens, or that rises steeply by its memory, must not lag behind the slip.
     let hardens = march.law.layer.is_some_and(|layer| layer.hardening != 0.0) || march.rises > RISING;
-    let mut course = Course { least: f64::INFINITY, since: 0, held: 0, was_newton: false, hardens };
+    let mut course = Course { least: f64::INFINITY, since: 0, lagged_steps: 0, was_newton: false, hardens };
     let mut is_fresh = false;
     loop {
         lag(problem, state, tangent, march);
@@ -132,7 +142,7 @@ fn iterate(
             resolve(problem, state, tangent, march, rho);
             system::step(problem, state, (tangent, march, forces), (rho, inner, most), fields)?;
         } else {
-            let effort = Effort { inner, most, left: measures.residual, length: 1.0 };
+            let effort = Effort { inner, most, residual: measures.residual, length: 1.0 };
             step::step(problem, state, tangent, (forces, effort), fields)?;
         }
         if !watch(worst) {
@@ -147,21 +157,21 @@ fn is_far(problem: &Problem) -> bool {
 }
 
 impl Course {
-    /// Whether the next step is Newton's. None if the iteration ends.
+    /// Whether the next step is a Newton step, after an iterate with the residual `worst`. None if the iteration ends.
     fn next(&mut self, worst: f64) -> Option<bool> {
-        let mut is_newton = self.hardens || worst < NEWTON_RESIDUAL && self.held == 0;
+        let mut is_newton = self.hardens || worst < NEWTON_RESIDUAL && self.lagged_steps == 0;
         if is_newton && !self.hardens && self.was_newton && worst > PROGRESS * self.least {
-            (self.held, is_newton) = (LAGGED_STEPS, false);
+            (self.lagged_steps, is_newton) = (LAGGED_STEPS, false);
         }
         self.since = if worst < GAIN * self.least { 0 } else { self.since + 1 };
         self.least = self.least.min(worst);
-        self.held = if is_newton { 0 } else { self.held.saturating_sub(1) };
+        self.lagged_steps = if is_newton { 0 } else { self.lagged_steps.saturating_sub(1) };
         self.was_newton = is_newton;
         (self.since <= PATIENCE).then_some(is_newton)
     }
 }
 
-/// Predicts sides, normals, curvatures and bounds of all elements by the resolvent of the march.
+/// Predicts stick, slip and bounds of all elements together: the slip of each element is that at which its bound plus rho times the slip is |tau|.
 fn resolve(problem: &mut Problem, state: &State, tangent: &mut Tangent, march: &mut March, rho: f64) {
     let a0 = problem.operators.self_influence;
     let share = a0 / problem.operators.greatest();

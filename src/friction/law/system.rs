@@ -1,16 +1,19 @@
-//! The linear system of a Newton step with a friction law. On elements in slip, too, both components are unknowns.
+//! The linear system of a Newton step with a law of friction. x is the change of q, and both of its components are unknowns on slip as well. B stands
+//! for A, or for the operator of steady rolling.
 //!
 //! ```text
 //! stick:        B x                                        = -s
 //! slip along t: t.(B x) + D t.x                            = -t.s + D t.x0          x0 = g n - q
-//! slip along n: b0 (n.x - change of g by n.x - rho n.(B x)) = b0 n.x0               b0: an element's influence on itself
+//! slip along n: b0 (n.x - dg)                              = b0 n.x0                b0: an element's influence on itself
 //! ```
 //!
-//! With prescribed forces `B x + c` replaces B x, where c is the change of the creepages, and `sum x = F/(dx dy) - sum q`. The border is
-//! eliminated as without a law, with `Y_k`, the preconditioned column of c_k.
+//! dg is the change of the bound by the change `n.x - rho n.(B x)` of |tau|, on this element and on those upstream (see [`march`](super::march)).
 //!
-//! The preconditioner on stick and along t is that without a law. Along n it is `1/(b0 (1 - g_T (1 - rho b0)))`, where g_T is the derivative of g by
-//! the element's own traction.
+//! With given forces `B x + c` replaces B x, where c is the change of the creepages, and `sum x = F/(dx dy) - sum q`. The border is eliminated as
+//! without a law, where `Y_k` is the preconditioned column of c_k.
+//!
+//! The preconditioner on stick and along t is that without a law. Along n it is `1/(b0 (1 - g_T (1 - rho b0)))`, where g_T is the derivative of g
+//! by |tau| of the same element.
 
 use super::super::forces::{sum_of, Forces};
 use super::super::plane::{add, dot, plus, Vector};
@@ -23,7 +26,7 @@ use crate::error::Result;
 use crate::methods::fgmres::{self, Bordered, Direction, System, Until};
 use crate::methods::fields::{self, Fields};
 
-/// The system at the state of the tangent and the march.
+/// The system, linearised at the prediction of the tangent and the last resolved state of the march.
 struct RadialSystem<'a> {
     problem: &'a mut Problem,
     tangent: &'a Tangent,
@@ -31,11 +34,12 @@ struct RadialSystem<'a> {
     rho: f64,
     border: Border,
     scratch: Vec<Vector>,
-    along: Vec<Vector>,
+    /// Scratch for P r.
+    projected: Vec<Vector>,
 }
 
 impl RadialSystem<'_> {
-    /// Computes Y and its sums.
+    /// Computes the columns Y of the border, and their sums.
     fn set_border(&mut self, fields: &mut Fields) -> Result<()> {
         let n = self.problem.bound.len();
         for (k, e) in self.border.directions() {
@@ -44,25 +48,28 @@ impl RadialSystem<'_> {
             self.apply((&nothing, e), &nothing, &mut column);
             self.precondition(&column, &mut y);
             [nothing, column].into_iter().for_each(|field| fields.give(field));
-            self.border.take(k, y, self.problem);
+            self.border.set_column(k, y, self.problem);
         }
         Ok(())
     }
 
+    /// Computes the preconditioned z of r, without the border.
     fn precondition(&mut self, r: &[Vector], z: &mut [Vector]) {
-        let RadialSystem { problem, tangent, march, rho, scratch, along, .. } = self;
+        let RadialSystem { problem, tangent, march, rho, scratch, projected, .. } = self;
         let (b0, unit, threads) = (problem.operators.self_influence, problem.rms_bound(), problem.threads().clone());
-        fields::fill(&threads, along, |k| tangent.project_inside(k, r[k]));
-        tangent.precondition(problem, along, unit, scratch, z);
+        fields::fill(&threads, projected, |k| tangent.project_inside(k, r[k]));
+        tangent.precondition(problem, projected, unit, scratch, z);
         fields::map(&threads, z, |k, z| match tangent.side[k] {
             Side::Slip => {
-                let own = 1.0 - march.resolved(k).linear[0][0] * (1.0 - *rho * b0);
-                plus(z, dot(tangent.normal[k], r[k]) / (b0 * own), tangent.normal[k])
+                let [[g_by_tau, ..], ..] = march.resolved(k).linear;
+                let diagonal = 1.0 - g_by_tau * (1.0 - *rho * b0);
+                plus(z, dot(tangent.normal[k], r[k]) / (b0 * diagonal), tangent.normal[k])
             }
             _ => z,
         });
     }
 
+    /// Computes the left-hand side h of the system for z and changes of the creepages `border`. `product` is B z.
     fn apply(&mut self, (z, border): (&[Vector], Vector), product: &[Vector], h: &mut [Vector]) {
         let RadialSystem { problem, tangent, march, rho, .. } = self;
         let b0 = problem.operators.self_influence;
@@ -97,7 +104,7 @@ impl System for RadialSystem<'_> {
     }
 }
 
-/// One Newton step. Its linear system is solved to the relative residual `inner`, with at most `most` directions.
+/// Makes one Newton step. Its linear system is solved to the relative residual `inner`, with at most `most` search directions.
 pub fn step(
     problem: &mut Problem,
     state: &mut State,
@@ -123,22 +130,22 @@ pub fn step(
     });
     let (weight, missing) = (border_weight(problem, state, forces), forces.less(|| sum_of(problem, &state.q)));
     let target = inner * (fields::dot(&threads, &r, &r) + weight * dot(missing, missing)).sqrt();
-    let (scratch, along) = (fields.take(n)?, fields.take(n)?);
-    let mut system = RadialSystem { problem, tangent, march, rho, border: Border::new(forces), scratch, along };
+    let (scratch, projected) = (fields.take(n)?, fields.take(n)?);
+    let mut system = RadialSystem { problem, tangent, march, rho, border: Border::new(forces), scratch, projected };
     system.set_border(fields)?;
     let r = Bordered { field: r, border: missing };
     let found = fgmres::solve(&mut system, r, (Until { target, most }, weight), &threads, fields)?;
-    let RadialSystem { scratch, along, border, .. } = system;
+    let RadialSystem { scratch, projected, border, .. } = system;
     border.give(fields);
-    [scratch, along].into_iter().for_each(|field| fields.give(field));
-    let mut gained = Bordered { field: fields.zeros(n, &threads)?, border: [0.0; 2] };
+    [scratch, projected].into_iter().for_each(|field| fields.give(field));
+    let mut change = Bordered { field: fields.zeros(n, &threads)?, border: [0.0; 2] };
     let mut product = fields.zeros(n, &threads)?;
-    found.add_to(&mut gained, &mut product, &threads, fields);
-    problem.update = problem.rms_of(fields::dot(&threads, &gained.field, &gained.field));
-    fields::add_all(&threads, &mut state.q, &[(1.0, &gained.field)]);
+    found.add_to(&mut change, &mut product, &threads, fields);
+    problem.update = problem.rms_of(fields::dot(&threads, &change.field, &change.field));
+    fields::add_all(&threads, &mut state.q, &[(1.0, &change.field)]);
     fields::add_all(&threads, &mut state.u, &[(1.0, &product)]);
-    problem.offset = add(problem.offset, forces.only_given(gained.border));
-    fields.give(gained.field);
+    problem.offset = add(problem.offset, forces.only_given(change.border));
+    fields.give(change.field);
     fields.give(product);
     state.is_exact = false;
     Ok(())
