@@ -58,8 +58,8 @@ impl<'a> Turns<'a> {
     /// The undeformed distance with all displacements, and its change where pressures act (in C and at a limit), as rms relative to
     /// `h - approach`. None: no change on the whole grid.
     pub(super) fn distance(&mut self, state: &State) -> (&[f64], Option<f64>) {
-        let (own, mut displaced) = (&self.distances.own, std::mem::take(&mut self.distances.displaced));
-        displaced.copy_from_slice(own);
+        let mut displaced = std::mem::take(&mut self.distances.displaced);
+        displaced.copy_from_slice(&self.distances.undisplaced);
         self.that(true).for_each(|coupled| coupled.displace(&mut displaced));
         let (mut changes, mut distances, mut differs) = (0.0, 0.0, false);
         for (i, displaced) in displaced.iter().enumerate() {
