@@ -1,8 +1,8 @@
 //! Estimates of the discretisation errors of a solution, from one grid.
 //!
-//! *Force and approach.* A pressure that is constant on an element is a mean over the element. Therefore displacements at centres differ from those by
-//! smooth pressures by `(1/24)(dx^2 u_xx + dy^2 u_yy)`, and in contact `u = approach - h`. By Betti's theorem, a change of h changes the approach by
-//! the mean of that change with weights q: the pressures of a flat punch of force 1 on the same contact area. At the boundary of contact, where
+//! *Force and approach.* A pressure that is constant on an element is a mean over the element. Therefore displacements at centres differ from those
+//! by smooth pressures by `(1/24)(dx^2 u_xx + dy^2 u_yy)`, and in contact `u = approach - h`. By Betti's theorem, a change of h changes the approach
+//! by the mean of that change with weights q: the pressures of a flat punch of force 1 on the same contact area. At the boundary of contact, where
 //! pressures fall to 0 as a square root, half of the error cancels:
 //!
 //! ```text
@@ -21,8 +21,8 @@
 //! [`PEAK_ERROR`] for the largest pressure, [`PRESSURES_ERROR`] for the rms. A peak whose second differences are a large part of the peak is singular
 //! or not resolved, and has no estimate.
 //!
-//! *The contact area* is a count of elements, and its outline ([`Outline`]) gives a correction. The error of the count is the correction. The error of
-//! the corrected area is a part of the correction. Straight pieces of the outline, and straight ends of the surface, add about half an element for
+//! *The contact area* is a count of elements, and its outline ([`Outline`]) gives a correction. The error of the count is the correction. The error
+//! of the corrected area is a part of the correction. Straight pieces of the outline, and straight ends of the surface, add about half an element for
 //! each of their elements. Ends of the surface in steps add the square root of the number of their elements.
 
 mod areas;
@@ -129,7 +129,8 @@ impl Parts {
         let (ends, highest) = ends(problem, state, outline);
         let highest_at_ends = highest.max(curvature.highest_at_jumps);
         let ends = per_approach * ends + one_element(problem, state) * found.abs();
-        let jumps = if problem.exact_jumps { 0.0 } else { JUMPS_FACTOR * per_approach * curvature.jumps / count as f64 };
+        let jumps =
+            if problem.exact_jumps { 0.0 } else { JUMPS_FACTOR * per_approach * curvature.jumps / count as f64 };
         let likely = sign * MEAN_ERROR * per_approach * curvature.bend;
         let parts = Parts { smooth, short, ends, jumps, stiffness, per_approach, highest_at_ends, likely };
         (parts.error().is_finite() && stiffness.is_finite()).then_some(parts)
@@ -227,7 +228,8 @@ pub fn estimate(
     let found = measures.found(finest.load);
     // An error of the force by a part implies an error of the area by the same part.
     let with_bend = parts.filter(|parts| parts.of_bend() > 0.0);
-    let of_force = with_bend.map_or(0.0, |parts| parts.of_bend() / parts.per_approach * parts.stiffness / measures.force);
+    let of_force =
+        with_bend.map_or(0.0, |parts| parts.of_bend() / parts.per_approach * parts.stiffness / measures.force);
     let lines = outline_off(problem, outline) * finest.grid.element_area() + of_force * measures.contact_area;
     // While the force is 0, `of_force` is infinite.
     let whole = finest.grid.len() as f64 * finest.grid.element_area();

@@ -103,7 +103,8 @@ impl<'a> Table<'a> {
         entries: &'a [Entry],
         options: &'a Options,
     ) -> Table<'a> {
-        // The yield limit of a layer changes with its plastic slip. Here that of fresh material suffices: the sum of the bounds only serves as a scale.
+        // The yield limit of a layer changes with its plastic slip. Here that of fresh material suffices: the sum of the bounds only serves as a
+        // scale.
         let layer =
             friction.layer.filter(|_| friction.has_ideal_layer()).map_or(f64::INFINITY, |layer| layer.yield_limit);
         let bounds = pressure.iter().enumerate().map(|(i, p)| (friction.coefficient.at(i) * p.max(0.0)).min(layer));

@@ -10,8 +10,8 @@
 //! until max_cycles, a callback that cancels, or no progress: then the best iterate is the result
 //! ```
 //!
-//! Numbers of steps are those of the paper. The product comes after (4.1) and before (4.2): with a product before (4.1), u would belong to pressures that
-//! (4.1) changes, and the loop could return to the same contact areas again and again.
+//! Numbers of steps are those of the paper. The product comes after (4.1) and before (4.2): with a product before (4.1), u would belong to pressures
+//! that (4.1) then changes, and the loop would cycle between contact areas.
 
 use super::best::Best;
 use crate::contact::{admit, all_stay, truncate, AdmissibleSet, Freshness, Survey};
@@ -60,8 +60,8 @@ pub fn iterate<S: AdmissibleSet>(
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
         if task.state.u_is == Freshness::Exact && goal.holds(&survey, change.update, set) && task.carries() {
             chatter += u32::from(changes > 0);
-            // If the bodies fit each other up to round-off, round-off lets elements enter and leave C without end. Then the certificate alone decides,
-            // and so it does for any bodies after some steps.
+            // If the bodies fit each other up to round-off, round-off lets elements enter and leave C without end. Then the certificate alone
+            // decides, and so it does for any bodies after some steps.
             let fits = survey.residual == 0.0 && survey.violation == 0.0 && all_stay(task.state, set);
             if changes == 0 || fits || policy.exchanged_by_loop && chatter > policy.chatter {
                 task.monitor.survey = Some(last);

@@ -97,8 +97,8 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Stiffness)> {
         let (grid, self_influence) = (self.problem.grid, self.problem.self_influence());
-        // The right-hand side is not 1 but a power of two near the self-influence, so that pressures are of order 1 in any units. Dividing by a power of
-        // two is exact.
+        // The right-hand side is not 1 but a power of two near the self-influence, so that pressures are of order 1 in any units. Dividing by a power
+        // of two is exact.
         let unit = if self_influence > 0.0 { self_influence.log2().floor().exp2() } else { 1.0 };
         let load = Load::Approach(unit);
         self.suit(load)?;

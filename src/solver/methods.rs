@@ -1,4 +1,5 @@
-//! The methods of a solver, each followed by the next of the list ([`stages`](super::stages)) when it stalls, and their starts without a guess.
+//! The methods of a solver. A list gives their order ([`stages`](super::stages)): when one makes no progress, or has used its share of cycles, the
+//! next one continues. Also their starts without a guess.
 
 use super::best::Best;
 use super::estimates;
@@ -50,7 +51,7 @@ enum Beginning {
 }
 
 impl Methods {
-    /// Creates the methods. All but multigrid, which is set up at its first use.
+    /// Creates all methods except multigrid, which is set up at its first use.
     pub fn new(problem: &Problem, options: &Options) -> Result<Methods> {
         Ok(Methods {
             projected_cg: ProjectedCg::new(problem, options.precision),
@@ -63,8 +64,8 @@ impl Methods {
         })
     }
 
-    /// Solves by the methods `stages`. The state is the start: `from` tells where it comes from, and `survey` is its survey unless it is p = 0. With a
-    /// positive `error_ratio` the tolerance of the goal may increase (see [`Options::error_ratio`]).
+    /// Solves by the methods `stages`. The state is the start: `from` tells where it comes from, and `survey` is its survey unless it is p = 0. With
+    /// a positive `error_ratio` the tolerance of the goal may increase (see [`Options::error_ratio`]).
     pub fn solve<S: AdmissibleSet>(
         &mut self,
         task: &mut Task<'_, '_, S>,
@@ -148,7 +149,7 @@ impl Methods {
             admit(state, set);
             return Ok(Beginning::FromNothing);
         }
-        // With limits the solution is no smooth function of the load, so it is not extrapolated from the last solutions.
+        // With limits pressures do not scale with the load, so they are not extrapolated from the last solutions.
         if on_coarser_grids && from == Start::Previous && !S::LIMITED {
             // This sets the contact area as well.
             self.projected_cg.predict(state, &task.problem.threads)?;

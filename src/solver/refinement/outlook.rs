@@ -89,7 +89,7 @@ impl History {
 
     /// Adds the values of a grid, and writes their errors to its outlook.
     pub fn add(&mut self, doublings: i32, values: &Values, outlook: &mut Outlook) {
-        for (course, value) in self.courses.iter_mut().zip(&values.of) {
+        for (course, value) in self.courses.iter_mut().zip(&values.of_wanted) {
             let Ok(found) = *value else { continue };
             course.add(doublings, found, values.residual);
             course.below_known_pressure(values.lack_estimates || outlook.falling(Quantity::MaxPressure).is_some());
@@ -107,8 +107,8 @@ impl History {
 
 /// The values of one grid, in the order of the wanted quantities.
 pub struct Values {
-    /// The values.
-    pub of: Vec<Result<Value, Lack>>,
+    /// The value of each wanted quantity, or why there is none. Empty if the computation was cancelled.
+    pub of_wanted: Vec<Result<Value, Lack>>,
     /// The relative residual.
     pub residual: f64,
     /// Whether one such grid has no estimates: a limit is reached, or bodies attract.

@@ -212,7 +212,7 @@ impl Sample {
 
     /// The value of the quantity.
     pub(super) fn value(&self) -> Option<f64> {
-        self.values.of.first().and_then(|value| value.ok().map(|found| found.value))
+        self.values.of_wanted.first().and_then(|value| value.ok().map(|found| found.value))
     }
 
     /// The relative error of the quantity, on this and finer grids.
