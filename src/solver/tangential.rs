@@ -27,7 +27,7 @@ pub struct Tangent {
 pub(crate) struct StepBefore {
     /// The tractions of each element.
     pub traction: Vec<Vector>,
-    /// What a law of friction or a layer remembers of each element.
+    /// The friction coefficient and the yield limit of each element.
     pub particles: Vec<Particle>,
     /// The pressures, for unlike bodies.
     pub pressure: Option<Vec<f64>>,

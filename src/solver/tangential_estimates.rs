@@ -1,8 +1,8 @@
 //! Estimates of the discretisation errors of tangential forces, from one grid. A shift must start from rest.
 //!
 //! *Shift.* For a paraboloid, the force of a shift is the difference of two normal forces: that on C and that on the stick area (Jager 1997;
-//! Ciavarella 1998). The approaches of both have an error of the same part of the bend, the change of slope of h within an element ([`estimates`]),
-//! so most of the error cancels. What remains is the error from the outline of the contact, which is larger with fewer elements across:
+//! Ciavarella 1998). The approaches of both have an error of the same part of the bend of h ([`estimates`]), so most of the error cancels. What
+//! remains is the error from the outline of the contact, which is larger with fewer elements across:
 //!
 //! ```text
 //! e = SHIFT_ERROR bend/depth (1 + (OUTLINE_CHORD/elements across)^2) mu N

@@ -95,7 +95,8 @@ impl<'a> TangentialTurn<'a> {
         self.refusal = refusal;
     }
 
-    /// Adds to the message of `refusal` the largest force of all creepages that were tried, which exceeds the given force by `excess` times mu N.
+    /// Writes the largest force of all creepages that were tried into the message of `refusal`. `excess` is that force less the given one, relative
+    /// to mu N.
     pub fn with_largest(&self, refusal: Error, excess: Option<f64>) -> Error {
         let carried = self.found.as_ref().map_or(0.0, |found| found.carried);
         let wanted = length(self.wanted());

@@ -7,9 +7,9 @@
 //! Azz dp + L dq - d = 0 on C,    dp = 0 outside and at a limit         the normal problem; d = 0 with a given approach, else sum dp = 0
 //! ```
 //!
-//! P, D and n are those of the [derivatives with fixed pressures](crate::friction::Report::sensitivities). A and Azz are the tangential and the
-//! normal influence, and d is the change of the approach. T dp is the sideways displacement by pressures, less that before the step. L dq is the
-//! displacement along the normal by tractions.
+//! P, D, z and n are those of the derivatives with fixed pressures (modules `derivatives` and `sensitivity` of `friction`). A and Azz are the
+//! tangential and the normal influence, and d is the change of the approach. T dp is the sideways displacement by pressures, less that before the
+//! step. L dq is the displacement along the normal by tractions.
 //!
 //! Each problem has a solver: the tangential one with fixed pressures, and the normal one on a given contact area with the undeformed distance L dq.
 //! One after the other they define a map `dp -> M dp + b`. Its fixed point is computed by minimising the residual over all directions so far
