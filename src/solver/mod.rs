@@ -93,8 +93,8 @@ use tangential::Tangent;
 /// With one thread, repeated solves by the same method and from the same kind of start allocate no memory, with three exceptions:
 ///
 /// - PROJECTED_CG and AUTO iterate on a window around the contact area. The operator of the window is set up again when its size changes.
-/// - From 128 x 128 elements on, products with pressures on a part of the grid use an operator of a shorter period. This operator is set up again when
-///   the extent of the pressures changes.
+/// - From 128 x 128 elements on, products with pressures on a part of the grid use an operator of a shorter period. This operator is set up again
+///   when the extent of the pressures changes.
 /// - From 2^23 elements (2896 x 2896) on, the operators for the start of a solve are set up in each solve.
 pub struct Solver {
     problem: contact::Problem,

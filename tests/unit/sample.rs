@@ -2,6 +2,7 @@ use super::*;
 use crate::solver::quantities::Quantity;
 
 /// A solve of one second for each reported iteration. It ends one second and one product after the last.
+/// Iterations: the residual, and the seconds and products so far.
 fn sample(iterations: Vec<(f64, f64, f64)>, tangential: f64) -> Sample {
     let &(_, seconds, products) = iterations.last().expect("an iteration");
     Sample {

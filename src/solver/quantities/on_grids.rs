@@ -132,14 +132,14 @@ fn estimate(report: &Report, quantity: Quantity) -> Option<f64> {
 /// these has half the elements of the next finer one in both directions. Each grid is solved without a guess. Returns one row for each grid and
 /// quantity, coarsest grid first, and the outcome on the grid of the scene.
 ///
-/// - Errors of force, largest pressure and area are the estimates of the report. All other errors follow from the values on this grid and coarser ones
-///   (module `sequence`); on the coarsest grid they are unknown.
+/// - Errors of force, largest pressure and area are the estimates of the report. All other errors follow from the values on this grid and coarser
+///   ones (module `sequence`); on the coarsest grid they are unknown.
 /// - If there is no contact on the grid of the scene, values of 0 are exact. Otherwise a value of 0 on a coarser grid without contact has no known
 ///   error.
 ///
 /// # Errors
-/// Those of a solve on the grid of the scene. `Unsupported`: the caller's influence coefficients, kept tractions, or a given contact area. A coarser grid
-/// on which the scene is refused is no error: its rows have no values.
+/// Those of a solve on the grid of the scene. `Unsupported`: the caller's influence coefficients, kept tractions, or a given contact area. If the
+/// scene is refused on a coarser grid, this is no error: the rows of that grid have no values.
 pub fn quantities(
     scene: &Scene<'_>,
     options: &Options,
