@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 use crate::methods::{Change, Step, Task};
 use crate::progress::Outcome;
 
-/// Iterates with one method from the state until an outcome is reached. `best` then holds the best iterate before convergence.
+/// Iterates with one method from the state until an outcome is reached. Unless this is Converged, `best` then holds the best iterate.
 pub fn iterate<S: AdmissibleSet>(
     method: &mut dyn Step<S>,
     task: &mut Task<'_, '_, S>,
@@ -39,7 +39,8 @@ pub fn iterate<S: AdmissibleSet>(
         let change = method.step(task).or_else(|error| given_up(error, method.name(), task));
         task.count_products();
         let change = change?;
-        // A fresh product was made in this step. Otherwise an exact u may be a linear combination of earlier displacements, which certifies nothing.
+        // Whether this step made a fresh product. Without one, an exact u may be a linear combination of earlier displacements, which certifies
+        // nothing.
         let is_certain = task.state.u_is == Freshness::Exact && task.monitor.count.matrix_products > products;
         if change.gives_up && !is_certain {
             return Ok(Outcome::Stagnated);

@@ -83,7 +83,7 @@ pub fn take_over<S: AdmissibleSet>(
 /// Sets the pressures and the contact area to start from: the guess, or those in the state. Returns which of them.
 fn take_pressures(state: &mut State, asked: Asked<'_>, has_solution: bool) -> Start {
     let is_fixed = asked.options.is_fixed();
-    // Elements at their limit count as in contact, which C does not contain.
+    // C does not contain the elements at their limit. In a start they belong to C.
     for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
         *inside |= std::mem::take(at_limit);
     }
