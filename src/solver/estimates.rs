@@ -227,9 +227,8 @@ pub fn estimate(
     let residual = measures.certificate.residual;
     let found = measures.found(finest.load);
     // An error of the force by a part implies an error of the area by the same part.
-    let with_bend = parts.filter(|parts| parts.of_bend() > 0.0);
-    let of_force =
-        with_bend.map_or(0.0, |parts| parts.of_bend() / parts.per_approach * parts.stiffness / measures.force);
+    let bent = parts.filter(|parts| parts.of_bend() > 0.0);
+    let of_force = bent.map_or(0.0, |parts| parts.of_bend() / parts.per_approach * parts.stiffness / measures.force);
     let lines = outline_off(problem, outline) * finest.grid.element_area() + of_force * measures.contact_area;
     // While the force is 0, `of_force` is infinite.
     let whole = finest.grid.len() as f64 * finest.grid.element_area();
@@ -247,7 +246,6 @@ pub fn estimate(
         let highest = peak.map(|missed| missed + (row.measures.max_pressure - measures.max_pressure).abs());
         let correction = (row.measures.contact_area - row.measures.corrected_area).abs();
         let off = if is_last { correction } else { (row.measures.contact_area - measures.corrected_area).abs() };
-        // The error that the residual may hide.
         let hidden = |value: f64| residual * value.abs();
         row.error = DiscretisationError {
             force: force.map(|error| error + hidden(found)),

@@ -39,8 +39,7 @@ pub fn iterate<S: AdmissibleSet>(
         let change = method.step(task).or_else(|error| given_up(error, method.name(), task));
         task.count_products();
         let change = change?;
-        // Whether this step made a fresh product. Without one, an exact u may be a linear combination of earlier displacements, which certifies
-        // nothing.
+        // A fresh product of this step. An exact u may also be a linear combination of earlier displacements, which certifies nothing.
         let is_certain = task.state.u_is == Freshness::Exact && task.monitor.count.matrix_products > products;
         if change.gives_up && !is_certain {
             return Ok(Outcome::Stagnated);
@@ -61,8 +60,7 @@ pub fn iterate<S: AdmissibleSet>(
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
         if task.state.u_is == Freshness::Exact && goal.holds(&survey, change.update, set) && task.carries() {
             chatter += u32::from(changes > 0);
-            // If the bodies fit each other up to round-off, round-off lets elements enter and leave C without end. Then the certificate alone
-            // decides, and so it does for any bodies after some steps.
+            // If the bodies fit up to round-off, elements may change sides without end. Then, and after some steps, the certificate alone decides.
             let fits = survey.residual == 0.0 && survey.violation == 0.0 && all_stay(task.state, set);
             if changes == 0 || fits || policy.exchanged_by_loop && chatter > policy.chatter {
                 task.monitor.survey = Some(last);
