@@ -1,7 +1,7 @@
 //! Bisection of an interval.
 
-/// Halves an interval until it is short enough, or 60 times: then it has 1e-18 of its first length. `is_below`: whether a number lies below the one
-/// looked for.
+/// Bisects the interval `(low, high)` around a wanted number and returns the last interval. `is_below(x)` tells whether x is less than the wanted
+/// number. The bisection ends when `is_enough(low, high)`, or after 60 halvings, which leave 1e-18 of the first length.
 pub fn bisect(
     (mut low, mut high): (f64, f64),
     is_enough: impl Fn(f64, f64) -> bool,

@@ -1,4 +1,4 @@
-//! A pass over a grid in blocks of rows, whose results are joined in order.
+//! A pass over all elements of a grid. Blocks of rows are processed in parallel, and their results are joined in the order of the blocks.
 //!
 //! Neither the blocks nor the bits of the joined result depend on the number of threads.
 
@@ -8,15 +8,16 @@ use std::ops::Range;
 use crate::grid::Grid;
 use crate::threads::Threads;
 
-/// Most blocks of a pass over a grid: each has a fixed cost.
+/// Most blocks of a pass over a grid, because each block has a fixed cost.
 pub const BLOCKS: usize = 64;
-/// Elements of a block: two fields of 1024 vectors stay in the nearest cache. Blocks of whole rows have about as many, or more.
+/// About the least number of elements of a block, which consists of whole rows. Two fields of so many two-component vectors fit into the first-level
+/// cache.
 pub const BLOCK: usize = 1024;
-/// Lanes of a pass, as many as in the longest vector: the compiler vectorises loops over them, and no bit of their sums depends on the machine.
-/// Flags of as many elements are the bytes of a word.
+/// The number of partial sums of a pass, one for each lane of the longest SIMD vector. The compiler vectorises loops over them. Their number is the
+/// same on all machines, and so are the bits of sums. The flags (bool) of this many elements are the bytes of a 64-bit word.
 pub const LANES: usize = 8;
 
-/// Joins the results of `work(elements)` for each block to `nothing`, in the order of the blocks.
+/// Calls `work(elements)` for each block of elements, and joins the results in the order of the blocks, beginning with `nothing`.
 #[inline(always)]
 pub fn fold<A: Clone + Send>(
     grid: &Grid,
@@ -35,6 +36,7 @@ pub fn fold<A: Clone + Send>(
             |b, found| *found = work(elements(first + b)),
         );
     };
+    // One thread needs memory for one result at a time.
     if threads.count() == 1 {
         return (0..count).fold(nothing.clone(), |so_far, b| {
             let mut found = [nothing.clone()];

@@ -1,6 +1,6 @@
-//! Errors. Each message names the argument, its value and the rule it breaks.
+//! Errors. A message names the argument, its value, and the rule that it breaks.
 
-/// Why a problem was refused or could not be solved. The C ABI maps each kind to a negative status.
+/// Why a problem was refused or could not be solved. The C ABI has a negative status for each variant.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -10,19 +10,19 @@ pub enum Error {
     /// A NaN, or an infinity where none is allowed.
     #[error("{0}")]
     NotFinite(String),
-    /// A valid request that this version does not carry out.
+    /// A valid request that this version of the library does not support.
     #[error("{0}")]
     Unsupported(String),
-    /// The prescribed force cannot be carried.
+    /// No pressures or tractions carry the prescribed force.
     #[error("{0}")]
     Infeasible(String),
     /// The influence coefficients are not those of a positive definite operator.
     #[error("{0}")]
     NotPositiveDefinite(String),
-    /// The influence coefficients differ from the solver's.
+    /// The influence coefficients differ from those of the solver's set-up.
     #[error("{0}")]
     InfluenceChanged(String),
-    /// Memory for the operators or the workspace could not be allocated.
+    /// Memory could not be allocated.
     #[error("{0}")]
     OutOfMemory(String),
 }
@@ -41,7 +41,7 @@ pub(crate) fn invalid<T>(message: String) -> Result<T> {
     Err(Error::InvalidArgument(message))
 }
 
-/// A number in a message, without rows of zeros: `-0.5`, `3`, `2e-9`.
+/// Formats a number for a message; very large and very small ones with an exponent: `-0.5`, `3`, `2e-9`.
 pub(crate) struct Number(pub f64);
 
 impl std::fmt::Display for Number {
@@ -55,7 +55,7 @@ impl std::fmt::Display for Number {
     }
 }
 
-/// A number that was computed, in a message: to six digits.
+/// Formats a computed number for a message, rounded to six digits.
 pub(crate) struct Rounded(pub f64);
 
 impl std::fmt::Display for Rounded {
@@ -65,7 +65,8 @@ impl std::fmt::Display for Rounded {
     }
 }
 
-/// Refuses a `value` for which `rule` does not hold (`holds` false), NaN and infinities as `NotFinite`.
+/// Refuses a `value` unless `holds`. The message names the value and the `rule` that it breaks. The error is `NotFinite` for NaN and infinities, else
+/// `InvalidArgument`.
 pub(crate) fn require(holds: bool, name: &str, value: f64, rule: &str) -> Result<()> {
     let message = || format!("{name} is {}; {rule}", Number(value));
     match (holds, value.is_finite()) {

@@ -1,12 +1,12 @@
-//! The potential contact area: `mx` by `my` rectangular elements of size `dx` by `dy`.
+//! The grid: the potential contact area, divided into `mx` by `my` rectangular elements of size `dx` by `dy`.
 
 use std::f64::consts::PI;
 use std::ops::Range;
 
 use crate::error::{invalid, require, Result};
 
-/// A grid of `mx * my` elements of size `dx * dy`. Arrays on it are `[my][mx]`, x fastest: element `(ix, iy)`
-/// has index `iy * mx + ix` (the bytes of a Fortran array `a(mx, my)`).
+/// A grid of `mx * my` elements of size `dx * dy`. Arrays of one value per element are `[my][mx]`, x fastest: element `(ix, iy)` has the index
+/// `iy * mx + ix`. A Fortran array `a(mx, my)` has the same memory layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// Elements in x.
@@ -19,10 +19,10 @@ pub struct Grid {
     pub dy: f64,
 }
 
-/// The largest number of elements: the padded products and the C ABI count elements in 32 bits.
+/// The largest number of elements. The C ABI and the padded products count elements in 32 bits.
 pub(crate) const MOST_ELEMENTS: usize = i32::MAX as usize;
 
-/// The ratio of the numbers of elements after and before a doubling in these directions.
+/// The factor on the number of elements if they are doubled in these directions: 4 for both, else 2.
 pub fn doubling((in_x, in_y): (bool, bool)) -> f64 {
     if in_x && in_y {
         4.0
@@ -32,27 +32,28 @@ pub fn doubling((in_x, in_y): (bool, bool)) -> f64 {
 }
 
 impl Grid {
-    /// The first size that differs from the grid of a set-up, in words. None if all are the same.
+    /// A message that names the first size in which this grid differs from that of a set-up. None if all sizes are equal.
     pub fn differs(&self, of_set_up: &Grid) -> Option<String> {
         let sizes = |grid: &Grid| [("mx", grid.mx as f64), ("my", grid.my as f64), ("dx", grid.dx), ("dy", grid.dy)];
         let pairs = sizes(self).into_iter().zip(sizes(of_set_up));
-        let (now, then) = pairs.into_iter().find(|(now, then)| now.1 != then.1)?;
-        Some(format!("{} is {}; this solver was set up for {}", now.0, now.1, then.1))
+        let ((name, now), (_, at_set_up)) = pairs.into_iter().find(|((_, now), (_, at_set_up))| now != at_set_up)?;
+        Some(format!("{name} is {now}; this solver was set up for {at_set_up}"))
     }
 
-    /// The directions in which a finer grid has more elements. A direction of one element that repeats is the same everywhere: it keeps its element.
+    /// The directions in which a finer grid has more elements. Not in a periodic direction of one element, along which nothing varies; unless the
+    /// grid has only this element.
     pub fn refines(&self, (repeats_x, repeats_y): (bool, bool)) -> (bool, bool) {
         (self.mx > 1 || !repeats_x || self.my == 1, self.my > 1 || !repeats_y || self.mx == 1)
     }
 
-    /// A grid, after a check of its sizes.
+    /// Makes a grid, and refuses invalid sizes.
     pub fn new(mx: usize, my: usize, dx: f64, dy: f64) -> Result<Grid> {
         let grid = Grid { mx, my, dx, dy };
         grid.check()?;
         Ok(grid)
     }
 
-    /// Checks the sizes. A caller may create a grid without [`new`](Self::new).
+    /// Refuses invalid sizes. A caller may have made the grid without [`new`](Self::new).
     pub fn check(&self) -> Result<()> {
         let Grid { mx, my, dx, dy } = *self;
         for (name, m) in [("mx", mx), ("my", my)] {
@@ -70,8 +71,8 @@ impl Grid {
         Ok(())
     }
 
-    /// Rows of each block, if work is divided into at most `most` blocks of about `least` elements or more. It does not depend on the number of
-    /// threads.
+    /// The number of rows of a block, if the grid is divided into at most `most` blocks of about `least` elements or more. The number does not depend
+    /// on the threads.
     pub(crate) fn rows_of_blocks(&self, most: usize, least: usize) -> usize {
         self.my.div_ceil(most).max(least / self.mx).min(self.my)
     }
@@ -81,13 +82,13 @@ impl Grid {
         self.mx * self.my
     }
 
-    /// Whether element `i` lies on the first or last row or column, in directions that do not repeat.
+    /// Whether element `i` lies in the first or last row or column, not counting the ends of periodic directions.
     pub(crate) fn is_at_end(&self, i: usize, (repeats_x, repeats_y): (bool, bool)) -> bool {
         let (x, y) = (i % self.mx, i / self.mx);
         !repeats_x && (x == 0 || x + 1 == self.mx) || !repeats_y && (y == 0 || y + 1 == self.my)
     }
 
-    /// Never: a grid has at least one element.
+    /// Always false: a grid has at least one element.
     pub fn is_empty(&self) -> bool {
         false
     }
@@ -97,8 +98,8 @@ impl Grid {
         self.dx * self.dy
     }
 
-    /// E* of half-spaces whose coefficient of an element on itself is `self_influence`. At the centre of a uniformly loaded rectangle
-    /// `E* A = (2/pi) (dx asinh(dy/dx) + dy asinh(dx/dy))` (Love).
+    /// E* of half-spaces on which a unit pressure on an element displaces the element itself by `self_influence`. At the centre of a uniformly loaded
+    /// rectangle, E* times this displacement is `(2/pi) (dx asinh(dy/dx) + dy asinh(dx/dy))` (Love 1929).
     pub fn modulus(&self, self_influence: f64) -> f64 {
         let (dx, dy) = (self.dx, self.dy);
         2.0 / PI * (dx * (dy / dx).asinh() + dy * (dx / dy).asinh()) / self_influence
@@ -115,7 +116,8 @@ impl Grid {
         [from_middle(i % self.mx, self.mx, self.dx), from_middle(i / self.mx, self.my, self.dy)]
     }
 
-    /// Numbers of offsets >= 0 in x and in y. In a periodic direction they reach to half the period, and are as many as the waves >= 0.
+    /// The numbers of offsets >= 0 between elements, in x and in y. In a periodic direction offsets reach to half the period; there are as many
+    /// wave numbers >= 0.
     pub(crate) fn offsets(&self, (x, y): (bool, bool)) -> (usize, usize) {
         let offsets = |repeats: bool, m: usize| if repeats { m / 2 + 1 } else { m };
         (offsets(x, self.mx), offsets(y, self.my))
@@ -126,7 +128,7 @@ impl Grid {
         iy * self.mx + ix
     }
 
-    /// The elements of a finer grid that element i of this one covers: up to 2 x 2. There are fewer at the end of an odd count, or if one
+    /// The elements of the next finer grid that element i of this grid covers: 2 x 2, or fewer at the end of an odd number of elements and if one
     /// direction is not coarsened.
     pub fn children(&self, fine: &Grid, i: usize) -> impl Iterator<Item = usize> {
         let (columns, mx) = (children(fine.mx, self.mx, i % self.mx), fine.mx);
@@ -134,13 +136,13 @@ impl Grid {
     }
 }
 
-/// The rows, or columns, out of `fine` that row i out of `coarse` covers.
+/// Along one direction: the elements of a line of `fine` elements that element i of a line of `coarse` elements covers.
 pub fn children(fine: usize, coarse: usize, i: usize) -> Range<usize> {
     let factor = if coarse < fine { 2 } else { 1 };
     factor * i..(factor * (i + 1)).min(fine)
 }
 
-/// Checks one value per element. The message names the first value that fails.
+/// Refuses arrays that have not one value per element, or in which a value does not meet `require`. The message names the first such value.
 pub(crate) fn check_values(
     name: &str,
     values: &[f64],

@@ -1,17 +1,17 @@
-//! Formulas in the lanes of SIMD vectors. Each value has the bits of the scalar formula, as no operations are contracted.
+//! Arithmetic with SIMD vectors, written as formulas. Each lane has the bits of the scalar formula, because no multiplication and addition are fused.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 use pulp::Simd;
 
-/// Values in the lanes of one vector.
+/// One value in each lane of a SIMD vector.
 #[derive(Clone, Copy)]
 pub struct Lanes<S: Simd> {
     simd: S,
     values: S::f64s,
 }
 
-/// A condition in each lane.
+/// A condition in each lane of a SIMD vector.
 #[derive(Clone, Copy)]
 pub struct Holds<S: Simd> {
     simd: S,
@@ -29,13 +29,13 @@ impl<S: Simd> Lanes<S> {
         Lanes { simd, values: simd.splat_f64s(value) }
     }
 
-    /// One value in all lanes.
+    /// A vector with `value` in all lanes; only the kind of vector is taken from `self`.
     #[inline(always)]
     pub fn all(self, value: f64) -> Lanes<S> {
         Lanes::splat(self.simd, value)
     }
 
-    /// `value(lane)` in each lane.
+    /// A vector with `value(lane)` in each lane; only the kind of vector is taken from `self`.
     #[inline(always)]
     pub fn of_each(self, value: impl Fn(usize) -> f64) -> Lanes<S> {
         let mut vector = self;
@@ -44,7 +44,7 @@ impl<S: Simd> Lanes<S> {
         vector
     }
 
-    /// The SIMD vector.
+    /// The vector as the type of the machine.
     #[inline(always)]
     pub fn values(self) -> S::f64s {
         self.values
@@ -77,19 +77,19 @@ impl<S: Simd> Lanes<S> {
 }
 
 impl<S: Simd> Holds<S> {
-    /// True in lanes of a 1, false in lanes of a 0.
+    /// A condition that holds in lanes with a 1, and not in lanes with a 0.
     #[inline(always)]
     pub fn of_ones(simd: S, ones: S::u64s) -> Holds<S> {
         Holds { simd, mask: simd.greater_than_u64s(ones, simd.splat_u64s(0)) }
     }
 
-    /// True in lanes of a 0, false in lanes of a 1.
+    /// A condition that holds in lanes with a 0, and not in lanes with a 1.
     #[inline(always)]
     pub fn of_zeros(simd: S, ones: S::u64s) -> Holds<S> {
         Holds { simd, mask: simd.greater_than_u64s(simd.splat_u64s(1), ones) }
     }
 
-    /// `yes` in lanes where the condition holds, `no` in the others.
+    /// Takes `yes` in lanes where the condition holds, and `no` in the others.
     #[inline(always)]
     pub fn choose(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
         Lanes { values: self.simd.select_f64s(self.mask, yes.values, no.values), ..yes }
@@ -102,6 +102,7 @@ impl<S: Simd> Holds<S> {
     }
 }
 
+/// Implements an operator between two vectors, and between a vector and a number.
 macro_rules! operation {
     ($name:ident, $method:ident, $of_machine:ident) => {
         impl<S: Simd> $name for Lanes<S> {
@@ -146,6 +147,7 @@ impl<S: Simd> Neg for Lanes<S> {
     }
 }
 
+/// Implements an operator between two conditions.
 macro_rules! logic {
     ($name:ident, $method:ident, $of_machine:ident) => {
         impl<S: Simd> $name for Holds<S> {

@@ -1,6 +1,6 @@
-//! The elastic normal contact problem: where two bodies pressed together touch, and with what pressure.
+//! Solves the elastic normal contact problem: where two bodies that are pressed together touch, and with which pressures.
 //!
-//! On a grid of `mx * my` rectangular elements (the potential contact area), find pressures p and the contact area C with
+//! The potential contact area is a grid of `mx * my` rectangular elements. The unknowns are pressures p and the contact area C with
 //!
 //! ```text
 //! e = h - approach + A p        deformed distance = undeformed distance - approach + displacement u = A p
@@ -8,9 +8,9 @@
 //! e > 0,  p = 0    outside      (exterior area)
 //! ```
 //!
-//! A is dense, symmetric and block Toeplitz. `A_IJ` is the displacement at the centre of element I by a unit pressure on
-//! element J. For the elastic half-space it is the Boussinesq integral of `(1 - nu)/(pi G) / rho` over element J. This is a linear
-//! complementarity problem. Either the approach is prescribed, or the force `sum of p dx dy` is prescribed and the approach is an unknown.
+//! This is a linear complementarity problem. A is dense, symmetric and block Toeplitz. `A_IJ` is the displacement at the centre of element I by a
+//! unit pressure on element J. For two equal elastic half-spaces it is the Boussinesq integral of `(1 - nu)/(pi G) / rho` over element J, with the
+//! distance rho from the centre of I. Either the approach is prescribed; or the force `sum of p dx dy` is prescribed, and the approach is an unknown.
 //!
 //! The methods are those of J. Zhao, E.A.H. Vollebregt and C.W. Oosterlee, "A Full Multigrid Method for Linear
 //! Complementarity Problems arising from Elastic Normal Contact Problems" ("the paper"; its section and step numbers are
@@ -49,17 +49,17 @@
 //! | [`influence`] | kernels (half-space, periodic, the caller's tables) and their coefficients |
 //! | [`operator`] | u = A p by FFT (of the crate `toeplitz`) |
 //! | [`contact`] | the unknowns, steps (4.1) and (4.2) on an admissible set, the guard against cycling, the certificate |
-//! | [`progress`] | the goal of a loop, why it ended, its counts, the ledger |
-//! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, a projected Newton method, the direct solve: each a step; and what they share |
-//! | [`solver`] | the loop (section 4.1), nested iteration (section 4.3), the choice of methods, the report |
+//! | [`progress`] | the goal of an iteration loop, why it ended, its counters, the ledger |
+//! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, projected Newton, direct solve: one step at a time |
+//! | [`solver`] | the iteration loop (section 4.1), nested iteration (section 4.3), the choice of methods, the report |
 //! | [`friction`], [`adhesion`] | the tangential problem; attraction across the gap |
 //! | [`heat`] | flash temperature, from a flux of heat |
 //! | [`wear`] | frictional work and depth of wear, from tractions and slips |
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
-//! | [`visco`] | Prony series of bodies that relax, and their step in time |
+//! | [`visco`] | Prony series of visco-elastic bodies, and their time steps |
 //! | [`analytic`] | the Hertz solution |
-//! | `bisection` | zeros of monotone functions |
-//! | `direction` | the two directions of a grid, and steps along them |
+//! | `bisection` | bisection of an interval |
+//! | `direction` | the two directions of a grid, and positions along them |
 //! | `powers` | numbers as a power of two times a factor near 1, for products that would overflow or underflow |
 //! | `blocks`, `lanes`, `rectangle` | parallel, vectorised passes over a grid; formulas in SIMD vectors; a part of a grid |
 //! | [`threads`], and of the same crate, `par`, `memory` and `sums` | the pool, large arrays, sums in a fixed order |

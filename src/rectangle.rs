@@ -1,4 +1,4 @@
-//! A rectangle of elements: the part of a grid outside of which nothing counts.
+//! A rectangle of elements of a grid, usually the bounding box of the elements with some property (the marked elements).
 
 use std::ops::Range;
 
@@ -21,7 +21,8 @@ impl Rectangle {
         Rectangle { x: 0..grid.mx, y: 0..grid.my }
     }
 
-    /// The smallest rectangle with all elements that count. `any`: whether any of some elements of a row counts. None if no element does.
+    /// The smallest rectangle that contains all marked elements; None without any. `any(elements)` tells whether a range of elements within one row
+    /// contains a marked one.
     pub fn around(
         grid: &Grid,
         threads: &Threads,
@@ -33,12 +34,12 @@ impl Rectangle {
             threads,
             None,
             #[inline(always)]
-            |block| in_rows(block.start / mx..block.end / mx, mx, &any),
+            |block| around_in_rows(block.start / mx..block.end / mx, mx, &any),
             Rectangle::joined,
         )
     }
 
-    /// [`Rectangle::around`], by values.
+    /// [`Rectangle::around`], where `any` gets the values of the elements instead of their indices.
     pub fn around_values<A: Sync>(
         values: &[A],
         grid: &Grid,
@@ -48,7 +49,7 @@ impl Rectangle {
         Rectangle::around(grid, threads, |elements| any(&values[elements]))
     }
 
-    /// The smallest rectangle that holds both.
+    /// The smallest rectangle that contains both rectangles; None contains no element.
     pub fn joined(a: Option<Rectangle>, b: Option<Rectangle>) -> Option<Rectangle> {
         let join = |a: Range<usize>, b: Range<usize>| a.start.min(b.start)..a.end.max(b.end);
         match (a, b) {
@@ -57,47 +58,47 @@ impl Rectangle {
         }
     }
 
-    /// Whether this is the whole grid.
+    /// Whether the rectangle is the whole grid.
     pub fn is_full(&self, grid: &Grid) -> bool {
         self.x.len() == grid.mx && self.y.len() == grid.my
     }
 
-    /// Number of elements.
+    /// The number of elements of the rectangle.
     pub fn count(&self) -> usize {
         self.x.len() * self.y.len()
     }
 
-    /// The rectangle as a grid.
+    /// A grid with the elements of the rectangle.
     pub fn grid(&self, grid: &Grid) -> Grid {
         Grid { mx: self.x.len(), my: self.y.len(), ..*grid }
     }
 
-    /// The elements of the rectangle's row `iy`, on the whole grid.
-    pub fn row(&self, grid: &Grid, iy: usize) -> Range<usize> {
-        let start = (self.y.start + iy) * grid.mx;
+    /// The indices on the whole grid of the elements in the rectangle's row number `own_row`, counted from its first row.
+    pub fn row(&self, grid: &Grid, own_row: usize) -> Range<usize> {
+        let start = (self.y.start + own_row) * grid.mx;
         start + self.x.start..start + self.x.end
     }
 
-    /// The elements in row `iy` of the whole grid: the index in the rectangle and the column on the grid of each.
+    /// For each element of the rectangle in row `iy` of the grid: its index in the rectangle, and its column on the grid.
     pub fn columns(&self, iy: usize) -> impl Iterator<Item = (usize, usize)> {
-        let row = self.y.contains(&iy).then(|| (iy - self.y.start) * self.x.len());
+        let first = self.y.contains(&iy).then(|| (iy - self.y.start) * self.x.len());
         let columns = self.x.clone();
-        row.into_iter().flat_map(move |first| (first..).zip(columns.clone()))
+        first.into_iter().flat_map(move |first| (first..).zip(columns.clone()))
     }
 
-    /// The elements: the index in the rectangle and the index on the whole grid of each.
+    /// For each element of the rectangle: its index in the rectangle, and its index on the grid.
     pub fn elements<'a>(&'a self, grid: &'a Grid) -> impl Iterator<Item = (usize, usize)> + 'a {
-        (0..).zip((0..self.y.len()).flat_map(move |iy| self.row(grid, iy)))
+        (0..).zip((0..self.y.len()).flat_map(move |own_row| self.row(grid, own_row)))
     }
 
-    /// Copies the part of `from`, on the whole grid, to `to`.
+    /// Copies the values in the rectangle from `from`, on the whole grid, to `to`, on the rectangle.
     pub fn extract<A: Copy + Send + Sync>(&self, grid: &Grid, from: &[A], to: &mut [A], threads: &Threads) {
         threads.for_a_pass(to.len()).for_each_plain_row(to, self.x.len(), |y, row| {
             row.copy_from_slice(&from[self.row(grid, y)]);
         });
     }
 
-    /// Copies `from`, on the rectangle, to its part of `to`, on the whole grid; `to` becomes `outside` elsewhere.
+    /// Copies `from`, on the rectangle, to the rectangle in `to`, on the whole grid. `to` becomes `outside` elsewhere.
     pub fn insert<A: Copy + Send + Sync>(&self, grid: &Grid, from: &[A], to: &mut [A], outside: A, threads: &Threads) {
         let Rectangle { x, y: rows } = self;
         threads.for_a_pass(to.len()).for_each_plain_row(to, grid.mx, |y, row| {
@@ -111,39 +112,39 @@ impl Rectangle {
     }
 }
 
-/// The smallest rectangle in some rows of `mx` elements each.
+/// [`Rectangle::around`] for the marked elements in some rows of `mx` elements each.
 #[inline(always)]
-fn in_rows(
-    Range { start: mut first, end: mut behind }: Range<usize>,
+fn around_in_rows(
+    Range { start: mut first_row, end: mut end_row }: Range<usize>,
     mx: usize,
     any: &impl Fn(Range<usize>) -> bool,
 ) -> Option<Rectangle> {
     let row = |y: usize| y * mx..(y + 1) * mx;
-    while first < behind && !any(row(first)) {
-        first += 1;
+    while first_row < end_row && !any(row(first_row)) {
+        first_row += 1;
     }
-    if first == behind {
+    if first_row == end_row {
         return None;
     }
-    while !any(row(behind - 1)) {
-        behind -= 1;
+    while !any(row(end_row - 1)) {
+        end_row -= 1;
     }
     let (mut start, mut end) = (mx, 0);
-    for Range { start: of_row, end: next_row } in (first..behind).map(row) {
-        // Only elements outside the columns so far are tested.
-        if any(of_row..of_row + start) {
-            start = first_of(of_row..of_row + start, any) - of_row;
+    for Range { start: row_start, end: row_end } in (first_row..end_row).map(row) {
+        // Elements in the columns found so far cannot widen the rectangle and are not tested.
+        if any(row_start..row_start + start) {
+            start = first_marked(row_start..row_start + start, any) - row_start;
         }
-        if any(of_row + end..next_row) {
-            end = last_of(of_row + end..next_row, any) + 1 - of_row;
+        if any(row_start + end..row_end) {
+            end = last_marked(row_start + end..row_end, any) + 1 - row_start;
         }
     }
-    Some(Rectangle { x: start..end, y: first..behind })
+    Some(Rectangle { x: start..end, y: first_row..end_row })
 }
 
-/// The first of some elements that counts, by bisection. At least one counts.
+/// The first marked element of a range that has one, by bisection.
 #[inline(always)]
-fn first_of(Range { mut start, mut end }: Range<usize>, any: &impl Fn(Range<usize>) -> bool) -> usize {
+fn first_marked(Range { mut start, mut end }: Range<usize>, any: &impl Fn(Range<usize>) -> bool) -> usize {
     while end - start > 1 {
         let middle = (start + end) / 2;
         match any(start..middle) {
@@ -154,9 +155,9 @@ fn first_of(Range { mut start, mut end }: Range<usize>, any: &impl Fn(Range<usiz
     start
 }
 
-/// The last of some elements that counts, by bisection. At least one counts.
+/// The last marked element of a range that has one, by bisection.
 #[inline(always)]
-fn last_of(Range { mut start, mut end }: Range<usize>, any: &impl Fn(Range<usize>) -> bool) -> usize {
+fn last_marked(Range { mut start, mut end }: Range<usize>, any: &impl Fn(Range<usize>) -> bool) -> usize {
     while end - start > 1 {
         let middle = (start + end) / 2;
         match any(middle..end) {

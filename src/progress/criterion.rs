@@ -1,32 +1,32 @@
-//! The goal of a loop, and why it ended.
+//! The goal of an iteration loop, and why the loop ended.
 
 use crate::contact::{AdmissibleSet, Survey};
 
-/// The criterion: the measure that has to fall below the tolerance.
+/// Which measure has to be at most the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Criterion {
     /// `||h - approach + A p||_2 <= tolerance * ||h - approach||_2`, over C.
     #[default]
     Residual,
-    /// NORM's own: rms over C of the last change of p at most `tolerance` times the rms over C of p. As a stalled iterate also has a small last
-    /// change, the residual has to be finite and at most the larger of [`UPDATE_RESIDUAL`] and the tolerance.
+    /// The criterion of Kalker's NORM: the rms over C of the last change of p is at most `tolerance` times the rms over C of p. An iterate that makes
+    /// no progress also has a small last change. Therefore the relative residual must be at most the larger of [`UPDATE_RESIDUAL`] and the tolerance.
     Update,
 }
 
-/// The fraction of the remaining cycles that a method may use before the next one follows.
-/// AUTO of a plain scene has 400, 240, 144, and the rest of 1000 for NORM, which converges on every contact area.
+/// The part of the remaining cycles that a method may use before the next method of the list follows. For example, the four methods of AUTO have 400,
+/// 240, 144 and 216 of 1000 cycles; the last one is NORM, which converges on every contact area.
 pub const METHOD_SHARE: f64 = 0.4;
-/// Relative residual up to which a small last change counts.
+/// With criterion UPDATE: the largest relative residual of a solution, unless the tolerance is larger.
 pub const UPDATE_RESIDUAL: f64 = 1e-2;
 
-/// The goal of a loop on one grid.
+/// The goal of an iteration loop on one grid.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
-    /// The criterion.
+    /// Which measure has to be at most the tolerance.
     pub criterion: Criterion,
-    /// The tolerance of the criterion.
+    /// The bound on that measure.
     pub tolerance: f64,
-    /// Most cycles.
+    /// Most cycles on the grid.
     pub max_cycles: u64,
 }
 
@@ -39,17 +39,18 @@ impl Goal {
         }
     }
 
-    /// Whether a state with a fresh u = A p satisfies the criterion and the contact conditions. Only this function decides.
-    /// `update`: rms over C of the last change of p. Comparisons are such that a NaN does not pass.
+    /// Whether a state satisfies the criterion and the contact conditions. No other function decides this. `survey` must be that of a state with u =
+    /// A p by a fresh product; `update` is the rms over C of the last change of p. All comparisons are false for NaN.
     pub fn holds<S: AdmissibleSet>(&self, survey: &Survey, update: f64, _: S) -> bool {
         let allowed = self.residual();
+        let ((of_gaps, of_displacements), (least_pressure, _)) = (survey.work, survey.range);
         let rms = (survey.squares / survey.contact_count.max(1) as f64).sqrt();
         let small = !self.by_update() || update <= self.tolerance * rms;
-        // An empty C has no residual, for any p.
+        // If C is empty the residual is 0 for any p, so the sum of p is tested as well.
         let finite = survey.residual.is_finite() && survey.pressures.is_finite();
         let conditions = finite && survey.residual <= allowed * survey.distance;
-        let free = survey.violation <= allowed * survey.scale && survey.work.0 <= allowed * survey.work.1;
-        small && conditions && (S::FIXED || free && survey.range.0 >= 0.0)
+        let free = survey.violation <= allowed * survey.scale && of_gaps <= allowed * of_displacements;
+        small && conditions && (S::FIXED || free && least_pressure >= 0.0)
     }
 
     /// Whether the criterion is UPDATE.
@@ -58,7 +59,7 @@ impl Goal {
     }
 }
 
-/// Why a loop ended.
+/// Why an iteration loop ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// The certificate holds.
@@ -67,6 +68,6 @@ pub enum Outcome {
     IterationLimit,
     /// The progress callback cancelled.
     Cancelled,
-    /// No further progress: the method does not converge on this scene, or round-off is reached.
+    /// No further progress: no method converges on this scene, or round-off prevents the tolerance.
     Stagnated,
 }

@@ -2,18 +2,18 @@
 
 use crate::error::{invalid, Error, Number, Result};
 
-/// The load: the approach of the bodies or the normal force.
+/// The load: either the approach of the bodies or the normal force is prescribed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Load {
-    /// Prescribed approach (penetration): `e = h - approach + A p`.
+    /// The approach (penetration) in `e = h - approach + A p`.
     Approach(f64),
-    /// Prescribed normal force, `sum of p dx dy`; the approach is found. Negative only on a given contact area or with
+    /// The normal force, `sum of p dx dy`. The approach is then an unknown. A force may be negative (tension) only on a given contact area or with
     /// adhesion.
     Force(f64),
 }
 
 impl Load {
-    /// Refuses an invalid load.
+    /// Refuses a load that is not finite.
     pub fn check(&self) -> Result<()> {
         let (name, value) = match *self {
             Load::Approach(approach) => ("approach", approach),
@@ -25,7 +25,7 @@ impl Load {
         Ok(())
     }
 
-    /// Refuses a force that pulls, unless pressures may pull: on a given contact area, or with adhesion.
+    /// Refuses a negative force, unless `is_fixed`. Callers also set `is_fixed` for scenes with adhesion.
     pub fn check_sign(&self, is_fixed: bool) -> Result<()> {
         match *self {
             Load::Force(force) if force < 0.0 && !is_fixed => invalid(format!(

@@ -1,4 +1,4 @@
-//! A scene: two bodies, the undeformed distance between them, the load, and the effects that it names.
+//! The scene that is simulated: two bodies, the undeformed distance between them, the load, and the effects.
 
 mod bodies;
 mod load;

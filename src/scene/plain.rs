@@ -1,4 +1,4 @@
-//! The part of a scene without effects, which every effect may read.
+//! The part of a scene that every effect may read: grid, distance, bodies and load.
 
 use super::{Bodies, Load};
 use crate::blocks;
@@ -12,7 +12,7 @@ use crate::threads::Threads;
 pub struct Plain<'a> {
     /// The potential contact area.
     pub grid: Grid,
-    /// h, `[my][mx]`; `+infinity`: no surface there, the element stays exterior.
+    /// h, `[my][mx]`. An element with `+infinity` has no surface and is never in contact.
     pub undeformed_distance: &'a [f64],
     /// Elasticity of the two bodies.
     pub bodies: Bodies,
@@ -21,14 +21,14 @@ pub struct Plain<'a> {
 }
 
 impl Plain<'_> {
-    /// Refuses an invalid grid and distances that are no numbers. Returns the least distance, infinite without a surface.
+    /// Refuses an invalid grid, and distances that are NaN or -infinity. Returns the least distance, which is infinite if no element has a surface.
     pub fn check_distance(&self, threads: &Threads) -> Result<f64> {
         self.grid.check()?;
         let (h, n) = (self.undeformed_distance, self.grid.len());
         if h.len() != n {
             return invalid(format!("undeformed_distance has {} values; the grid has {n} elements", h.len()));
         }
-        // NaN is not greater than anything.
+        // The comparison is false for NaN.
         let is_number = |v: &f64| *v > f64::NEG_INFINITY;
         let (lowest, all) = blocks::fold(
             &self.grid,
@@ -36,7 +36,7 @@ impl Plain<'_> {
             (f64::INFINITY, true),
             #[inline(always)]
             |block| {
-                // All elements at once: the compiler vectorises this.
+                // No early exit and a mask instead of a branch, so that the compiler vectorises the loop.
                 let h = &h[block];
                 let all = h.iter().fold(!0, |all: u64, v| all & u64::from(is_number(v)).wrapping_neg());
                 (least(h), all != 0)
@@ -53,7 +53,7 @@ impl Plain<'_> {
         }
     }
 
-    /// Refuses a force without a surface, if the lowest distance is infinite.
+    /// Refuses a positive force if no element has a surface: the `lowest` distance is infinite.
     pub fn check_surface(&self, lowest: f64) -> Result<()> {
         match self.load {
             Load::Force(force) if force > 0.0 && lowest.is_infinite() => Err(Error::Infeasible(format!(

@@ -1,4 +1,4 @@
-//! A scene on another grid over the same rectangle: coarser or finer, in any ratio.
+//! Transfers a scene to another grid over the same rectangle, which may be coarser or finer in any ratio.
 
 use super::{refine, Adhesion, Each, Friction, Layer, Motion, Patches, PressureLimit, Previous, Scene};
 use crate::effects::{check_other_grids, repeats};
@@ -6,7 +6,8 @@ use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 
-/// The directions in which finer grids of a scene have more elements, see [`Grid::refines`]. A surface callback may differ along each.
+/// The directions in which finer grids of a scene have more elements: see [`Grid::refines`]. These are both directions if the scene has no undeformed
+/// distance, because a surface callback may vary along both.
 pub fn refines(scene: &Scene<'_>) -> (bool, bool) {
     match scene.undeformed_distance.is_empty() {
         true => (true, true),
@@ -14,8 +15,8 @@ pub fn refines(scene: &Scene<'_>) -> (bool, bool) {
     }
 }
 
-/// The grid over the rectangle of a scene with the elements of the directions that it [`refines`] doubled `doublings` times. A negative
-/// number halves those of both, rounded, down to one.
+/// The grid over the rectangle of a scene whose elements are doubled `doublings` times, in the directions that the scene [`refines`]. A negative
+/// number halves the elements in both directions, rounded, down to one.
 pub fn scaled(scene: &Scene<'_>, doublings: i32) -> Result<Grid> {
     let Grid { mx, my, dx, dy } = scene.grid;
     if doublings >= 0 {
@@ -27,21 +28,23 @@ pub fn scaled(scene: &Scene<'_>, doublings: i32) -> Result<Grid> {
             _ => invalid(format!("{mx} x {my} elements cannot be divided {doublings} times")),
         };
     }
-    let joined = 2f64.powi(-doublings);
-    let fewer = |m: usize| ((m as f64 / joined).round() as usize).max(1);
+    let ratio = 2f64.powi(-doublings);
+    let fewer = |m: usize| ((m as f64 / ratio).round() as usize).max(1);
     let (fewer_x, fewer_y) = (fewer(mx), fewer(my));
     let length = |m: usize, fewer: usize, d: f64| d * (m as f64 / fewer as f64);
     Grid::new(fewer_x, fewer_y, length(mx, fewer_x, dx), length(my, fewer_y, dy))
 }
 
-/// The undeformed distance `h` of `grid` at the centres of a coarser grid: the weighted mean of those of the four centres around each that
-/// have a surface. With fewer than two there is no surface; a centre that coincides with one of `grid` has its value.
+/// Interpolates the undeformed distance `h` of `grid` to the centres of the `coarse` grid: bilinearly from the four centres around each. Centres
+/// without a surface are left out of the weighted mean. If fewer than two of the four have a surface, there is none. A centre that coincides with one
+/// of `grid` gets its value exactly.
 pub fn sample(h: &[f64], grid: &Grid, coarse: &Grid) -> Result<Vec<f64>> {
     let columns: Vec<[(usize, f64); 2]> = (0..coarse.mx).map(|i| between(i, coarse.mx, grid.mx)).collect();
     let mut sampled = zeros(coarse.len(), "undeformed distances of a coarser grid")?;
     for (iy, row) in sampled.chunks_exact_mut(coarse.mx).enumerate() {
         let rows = between(iy, coarse.my, grid.my);
         for (value, columns) in row.iter_mut().zip(&columns) {
+            // `all` counts the centres with a positive weight, `count` those of them with a surface.
             let (mut sum, mut weights, mut count, mut all) = (0.0, 0.0, 0, 0);
             for ((y, of_y), (x, of_x)) in rows.iter().flat_map(|y| columns.iter().map(move |x| (*y, *x))) {
                 let (h, weight) = (h[grid.index(x, y)], of_y * of_x);
@@ -56,9 +59,9 @@ pub fn sample(h: &[f64], grid: &Grid, coarse: &Grid) -> Result<Vec<f64>> {
     Ok(sampled)
 }
 
-/// The two of `m` centres around centre i of `coarse`, with their weights.
+/// Along one direction: the two centres of a grid with `m` elements around centre i of a grid with `coarse` elements, and their weights.
 fn between(i: usize, coarse: usize, m: usize) -> [(usize, f64); 2] {
-    // Integers until the end, so that coinciding centres are exact.
+    // Integers up to the division, so that the weights of coinciding centres are exactly 1 and 0.
     let (twice, whole) = ((2 * i + 1) * m - coarse, 2 * coarse);
     let (first, part) = (twice / whole, (twice % whole) as f64 / whole as f64);
     [(first, 1.0 - part), ((first + 1).min(m - 1), part)]
@@ -71,7 +74,7 @@ struct Regrid {
 }
 
 impl Regrid {
-    /// Means over the elements of the other grid.
+    /// The values on the new grid: means over its elements of values that are constant on the old elements.
     fn means(&self, values: &[f64]) -> Result<Vec<f64>> {
         let parts = |m: usize, to: usize| -> Vec<Vec<(usize, f64)>> { (0..to).map(|i| parts(i, to, m)).collect() };
         let (columns, rows) = (parts(self.from.mx, self.to.mx), parts(self.from.my, self.to.my));
@@ -83,6 +86,7 @@ impl Regrid {
         Ok(collected((0..self.to.len()).map(of), "values of a scene on another grid")?)
     }
 
+    /// The means of two fields, times `factor`.
     fn pair(&self, pair: Option<[&[f64]; 2]>, factor: f64) -> Result<Option<[Vec<f64>; 2]>> {
         let Some([x, y]) = pair else { return Ok(None) };
         let mut pair = [self.means(x)?, self.means(y)?];
@@ -90,31 +94,32 @@ impl Regrid {
         Ok(Some(pair))
     }
 
-    /// The values in the elements around the centres of the other grid.
+    /// The values of the old elements that contain the centres of the new elements.
     fn at_centres(&self, values: &[i32]) -> Result<Vec<i32>> {
-        let at = |i: usize, to: usize, m: usize| (2 * i + 1) * m / (2 * to);
+        let old = |i: usize, to: usize, m: usize| (2 * i + 1) * m / (2 * to);
         let of = |i: usize| {
             let (x, y) = (i % self.to.mx, i / self.to.mx);
-            values[self.from.index(at(x, self.to.mx, self.from.mx), at(y, self.to.my, self.from.my))]
+            values[self.from.index(old(x, self.to.mx, self.from.mx), old(y, self.to.my, self.from.my))]
         };
         Ok(collected((0..self.to.len()).map(of), "patches of a scene on another grid")?)
     }
 
-    /// The means of values given per element.
+    /// The means of values that are given per element. None for uniform values.
     fn each(&self, values: Option<Each<'_>>) -> Result<Option<Vec<f64>>> {
         values.and_then(|values| values.per_element()).map(|values| self.means(values)).transpose()
     }
 }
 
-/// The elements out of `m` that element i of `to` covers, with the part of element i that each covers.
+/// Along one direction: the elements of a grid of `m` elements that overlap element i of a grid of `to` elements. With each comes the part of element
+/// i that it covers.
 fn parts(i: usize, to: usize, m: usize) -> Vec<(usize, f64)> {
-    // Lengths are in units of 1/(to m) of the whole.
+    // Lengths in units of 1/(to m) of the whole line are integers.
     let (start, end) = (i * m, (i + 1) * m);
     let part = |x: usize| (end.min((x + 1) * to) - start.max(x * to)) as f64 / m as f64;
     (start / to..end.div_ceil(to)).map(|x| (x, part(x))).collect()
 }
 
-/// The arrays per element of a scene, on another grid.
+/// The arrays of a scene on another grid.
 pub struct Regridded {
     grid: Grid,
     undeformed_distance: Vec<f64>,
@@ -131,29 +136,34 @@ pub struct Regridded {
 }
 
 impl Regridded {
-    /// A scene on the grid `to`. `surface`: the undeformed distance on it; none: that of the scene, [refined](refine) by a whole ratio or
-    /// [sampled](sample). Compliances, limits, works of adhesion, coefficients of friction, weights and tractions are means over the elements. A
-    /// rigid slip scales with the length of the step. A step of transient rolling keeps its length, and one of steady rolling its number of elements.
+    /// Transfers the arrays of a scene to the grid `to`:
+    ///
+    /// - The undeformed distance is `surface` if given. Otherwise that of the scene is [refined](refine) if each element becomes a whole number of
+    ///   elements, else [sampled](sample).
+    /// - Compliances, limits, works of adhesion, coefficients of friction, weights and tractions become means over the new elements.
+    /// - A rigid slip scales with the length of the rolling step. A step of transient rolling keeps its length, a step of steady rolling
+    ///   keeps its number of elements.
     ///
     /// # Errors
-    /// `Unsupported`: effects that stand for one grid only, as own coefficients, or previous tractions kept by a solver.
+    /// `Unsupported`: effects that belong to one grid, such as the caller's influence coefficients or tractions kept by a solver.
     pub fn new(scene: &Scene<'_>, to: Grid, surface: Option<Vec<f64>>) -> Result<Regridded> {
         check_other_grids(scene)?;
         let from = scene.grid;
         let regrid = Regrid { from, to };
         let friction = scene.friction.as_ref();
-        let (before, rolling_distance) = friction.map_or((1.0, 0.0), |friction| {
+        // The length of a rolling step on the old grid, and `rolling_distance` on the new one.
+        let (old_step, rolling_distance) = friction.map_or((1.0, 0.0), |friction| {
             let step = friction.distance(&from);
-            let by_element = |grid: &Grid| Friction { rolling_distance: 0.0, ..*friction }.distance(grid);
-            let other = match friction.motion {
+            let default_step = |grid: &Grid| Friction { rolling_distance: 0.0, ..*friction }.distance(grid);
+            let new = match friction.motion {
                 Motion::TransientRolling => step,
-                // The step is a part of the discretisation.
-                Motion::SteadyRolling => friction.rolling_distance * (by_element(&to) / by_element(&from)),
+                // In steady rolling the step is a part of the discretisation and refined with the grid.
+                Motion::SteadyRolling => friction.rolling_distance * (default_step(&to) / default_step(&from)),
                 Motion::Shift => friction.rolling_distance,
             };
-            (step, other)
+            (step, new)
         });
-        let step = friction.map_or(1.0, |friction| Friction { rolling_distance, ..*friction }.distance(&to));
+        let new_step = friction.map_or(1.0, |friction| Friction { rolling_distance, ..*friction }.distance(&to));
         let layer = regrid.each(scene.layer.map(|layer| layer.0))?;
         let limits = regrid.each(scene.pressure_limit.map(|limit| limit.0))?;
         let works = regrid.each(scene.adhesion.map(|adhesion| adhesion.work))?;
@@ -162,7 +172,7 @@ impl Regridded {
             None => distance(scene, &to)?,
         };
         let patches = scene.patches.map(|patches| regrid.at_centres(patches.patch)).transpose()?;
-        // Without a patch there is no surface, also in a scene whose patches are left out.
+        // Elements without a patch have no surface. A bill may leave out the patches of this scene later, and this must remain.
         for (h, patch) in undeformed_distance.iter_mut().zip(patches.iter().flatten()) {
             if *patch < 0 {
                 *h = f64::INFINITY;
@@ -178,7 +188,7 @@ impl Regridded {
             coefficients: regrid.each(friction.map(|friction| friction.coefficient))?,
             compliances: regrid.each(friction.map(|friction| friction.compliance))?,
             weights: regrid.pair(friction.and_then(|friction| friction.weights), 1.0)?,
-            rigid_slip: regrid.pair(friction.and_then(|friction| friction.rigid_slip), step / before)?,
+            rigid_slip: regrid.pair(friction.and_then(|friction| friction.rigid_slip), new_step / old_step)?,
             previous: match friction.map(|friction| friction.previous) {
                 Some(Previous::Given(tractions)) => regrid.pair(Some(tractions), 1.0)?,
                 _ => None,
@@ -187,7 +197,7 @@ impl Regridded {
         })
     }
 
-    /// The scene of [`Regridded::new`] on the other grid.
+    /// `scene`, which must be that of [`Regridded::new`], on the other grid.
     pub fn scene<'a>(&'a self, scene: &Scene<'a>) -> Scene<'a> {
         let per_element = |values: &'a Option<Vec<f64>>, uniform: Each<'a>| {
             values.as_ref().map_or(uniform, |values| Each::PerElement(values))
@@ -212,7 +222,7 @@ impl Regridded {
                 previous: pair(&self.previous).map_or(Previous::None, Previous::Given),
                 rolling_distance: self.rolling_distance,
                 initial: None,
-                // These belong to the elements of one grid. A law that reads them is refused on several grids.
+                // Both arrays belong to the elements of one grid. Friction laws that read them are refused on several grids.
                 coefficients_before: None,
                 yield_limits: None,
                 ..friction
@@ -222,7 +232,7 @@ impl Regridded {
     }
 }
 
-/// The undeformed distance of a scene on another grid: refined by cubics if each element becomes a whole number of elements, else sampled.
+/// The undeformed distance of a scene on another grid: [refined](refine) if each element becomes a whole number of elements, else [sampled](sample).
 fn distance(scene: &Scene<'_>, to: &Grid) -> Result<Vec<f64>> {
     let (h, from) = (scene.undeformed_distance, &scene.grid);
     let (x, y) = (to.mx / from.mx, to.my / from.my);

@@ -1,11 +1,11 @@
-//! The scene: the plain scene and its named effects.
+//! The scene: grid, distance, bodies and load, and one optional field for each effect.
 
 use super::{Bodies, Load, Plain};
 use crate::effects::list::with_effects;
 use crate::effects::Adhesion;
 use crate::grid::Grid;
 
-/// The scene of the [list](crate::effects) of effects: each is a field.
+/// Defines the scene with a field for each effect of the [list](crate::effects).
 macro_rules! define_scene {
     ($($(#[doc = $doc:literal])+ $(#[cfg($when:meta)])? $name:ident: $effect:ty,)+) => {
         /// One contact problem: `e = h - approach + A p`.
@@ -13,7 +13,7 @@ macro_rules! define_scene {
         pub struct Scene<'a> {
             /// The potential contact area.
             pub grid: Grid,
-            /// h, `[my][mx]`; `+infinity`: no surface there, the element stays exterior.
+            /// h, `[my][mx]`. An element with `+infinity` has no surface and is never in contact.
             pub undeformed_distance: &'a [f64],
             /// Elasticity of the two bodies.
             pub bodies: Bodies,
@@ -23,7 +23,7 @@ macro_rules! define_scene {
         }
 
         impl<'a> Scene<'a> {
-            /// A scene without further effects.
+            /// A scene without effects.
             pub fn new(grid: Grid, undeformed_distance: &'a [f64], bodies: Bodies, load: Load) -> Scene<'a> {
                 Scene { grid, undeformed_distance, bodies, load, $($(#[cfg($when)])? $name: None,)+ }
             }

@@ -1,5 +1,5 @@
-//! Scenes with adhesion. [`adhesion`](crate::adhesion) solves them on separate grids. The methods of all other scenes solve the contact problems
-//! with frozen attraction.
+//! Solves scenes with adhesion. The module [`adhesion`](crate::adhesion) does so on grids of its own. Some of its steps hold the attraction fixed
+//! ("frozen"): what remains is a contact problem without adhesion, which the methods of AUTO solve.
 
 use std::mem::MaybeUninit;
 
@@ -17,7 +17,7 @@ use crate::methods::{Start, Task};
 use crate::progress::{Goal, Monitor, Outcome, Progress};
 use crate::scene::{Load, Scene};
 
-/// The solver of contact problems with frozen attraction: the methods of AUTO.
+/// Solves contact problems with frozen attraction ([`Frozen`]) by the methods of AUTO.
 struct Plain(Methods);
 
 impl Frozen for Plain {
@@ -36,20 +36,20 @@ impl Frozen for Plain {
         }
         problem.refresh(state, NonNegative)?;
         let survey = Survey::by(state, &problem.threads);
-        let own_grid = state.grid;
-        // A separate monitor, because cycles on coarser grids are not cycles of this grid.
+        let state_grid = state.grid;
+        // The methods get a separate monitor. The callback below counts only cycles on the grid of the state as cycles of the caller's solve.
         let mut tell = |progress: &Progress| {
             let Progress { mx, my, active_set_changes, update, residual, .. } = *progress;
-            let grid = Grid { mx, my, ..own_grid };
-            if (mx, my) == (own_grid.mx, own_grid.my) {
+            let grid = Grid { mx, my, ..state_grid };
+            if (mx, my) == (state_grid.mx, state_grid.my) {
                 !monitor.cycle_done(&grid, active_set_changes, update, residual)
             } else {
                 !monitor.uncounted_done(&grid, residual)
             }
         };
-        let mut own = Monitor::new(Some(&mut tell), Vec::new(), false);
+        let mut inner_monitor = Monitor::new(Some(&mut tell), Vec::new(), false);
         let goal = Goal { criterion: Criterion::Residual, tolerance, max_cycles };
-        let mut task = Task { problem, state, lowest, set: NonNegative, goal, monitor: &mut own };
+        let mut task = Task { problem, state, lowest, set: NonNegative, goal, monitor: &mut inner_monitor };
         let stages = stages::stages::<NonNegative>(Method::Auto, true, false);
         self.0.solve(&mut task, (Start::Given, Some(survey)), stages, 0.0)
     }
@@ -60,14 +60,15 @@ impl Frozen for Plain {
 }
 
 impl Solver {
-    /// Contact pressure q and attraction sigma of element i of the last result; none if its scene had no adhesion.
+    /// Returns a function from an element's index to its contact pressure q and attraction sigma in the last result. None without a result, or if
+    /// its scene had no adhesion.
     pub fn adhesion(&self) -> Option<impl Fn(usize) -> (f64, f64) + '_> {
         let split = self.split.as_ref().filter(|_| self.has_result)?;
         Some(|i| split.at(&self.state, i))
     }
 
-    /// Writes `which` of the contact pressure and the attraction of each element of the last result; without adhesion all pressures are contact
-    /// pressures.
+    /// Writes `which((q, sigma))` for each element of the last result: q is the contact pressure, sigma the attraction. Without adhesion q is p and
+    /// sigma is 0.
     pub fn write_part(&self, to: &mut [MaybeUninit<f64>], which: impl Fn((f64, f64)) -> f64 + Sync + Send) {
         let (state, split) = (&self.state, self.adhesion());
         let parts = |i: usize| split.as_ref().map_or((state.p[i], 0.0), |split| split(i));
@@ -79,8 +80,9 @@ impl Solver {
         });
     }
 
-    /// Searches the least force of an equilibrium. The approach decreases from the load of the scene, and from bodies pressed together, until nothing
-    /// is in contact. The result is the state of the least force on both branches.
+    /// Searches for the pull-off force: the least normal force of a stable state, which is negative if the bodies hold together. The approach
+    /// decreases until nothing is in contact, once from the load of the scene, and again from bodies pressed together. The result is the state of
+    /// the least force on these paths.
     pub fn pull_off(
         &mut self,
         scene: &Scene<'_>,
@@ -100,7 +102,7 @@ impl Solver {
         self.solve_adhesive(asked, (adhesion, true), progress)
     }
 
-    /// Solves a checked scene with adhesion.
+    /// Solves a checked scene with adhesion, or searches for its pull-off force if `pull_off`.
     pub(super) fn solve_adhesive(
         &mut self,
         asked: Asked<'_>,
@@ -110,7 +112,7 @@ impl Solver {
         let Asked { scene, options, .. } = asked;
         check::guess(asked)?;
         check_options(options)?;
-        // Here the approach contains the compression by the mean pressure, for any load.
+        // With adhesion the coefficients always contain the compression by the mean pressure, also for a given force.
         self.suit(Load::Approach(0.0))?;
         check::range(asked, &self.problem, self.set_up.largest_influence)?;
         if !self.problem.symmetric {
@@ -119,14 +121,14 @@ impl Solver {
         }
         check_alike(scene)?;
         self.check_continues(scene)?;
-        let goes_on = options.initial_guess == InitialGuess::Previous && self.has_result;
+        let from_last_result = options.initial_guess == InitialGuess::Previous && self.has_result;
         let kept = self.kept(scene)?;
         self.methods.projected_cg.forget_windows();
         self.methods.projected_cg.forget_solutions();
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), false);
         self.has_result = false;
         take_distance(&mut self.state, scene.undeformed_distance, &self.problem.threads);
-        let solved = self.run_adhesive(asked, (adhesion, pull_off), goes_on, &mut monitor);
+        let solved = self.run_adhesive(asked, (adhesion, pull_off), from_last_result, &mut monitor);
         self.ledger = std::mem::take(&mut monitor.ledger.rows);
         let solved = solved.and_then(|(outcome, found, split)| {
             let (outcome, friction) = self.rub(scene, (adhesion, &split), options, outcome, &mut monitor)?;
@@ -148,11 +150,12 @@ impl Solver {
         Ok((outcome, report))
     }
 
+    /// Calls the solver of adhesion with the arrays of the state, and takes over its solution.
     fn run_adhesive(
         &mut self,
         Asked { scene, lowest, options, guess, .. }: Asked<'_>,
         (adhesion, pull_off): (&Adhesion<'_>, bool),
-        goes_on: bool,
+        from_last_result: bool,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, adhesion::Report, adhesion::Split)> {
         let mut solver = match self.adhesion.take() {
@@ -163,12 +166,12 @@ impl Solver {
                 Box::new(adhesion::Solver::new(*grid, coefficients, operator, threads)?)
             }
         };
-        // Products of adhesion have separate memory.
+        // The solver of adhesion has memory of its own for products.
         self.problem.rest();
         let lent = Lent::new(&mut solver, &mut self.state);
         let (contact, approach) = (&lent.state.contact[..], lent.state.approach);
-        let from = match guess {
-            _ if goes_on => Some(adhesion::InitialState { pressure: None, contact, approach }),
+        let start_state = match guess {
+            _ if from_last_result => Some(adhesion::InitialState { pressure: None, contact, approach }),
             Some(Guess { pressure, contact }) => {
                 Some(adhesion::InitialState { pressure: Some(pressure), contact, approach: lowest })
             }
@@ -184,7 +187,7 @@ impl Solver {
             load: scene.load,
             pull_off,
             start: adhesion.start,
-            state: from.filter(|from| lowest.is_finite() && from.approach.is_finite()),
+            state: start_state.filter(|start| lowest.is_finite() && start.approach.is_finite()),
             stiffness: adhesion.stiffness,
             stability: adhesion.stability,
             tolerance: options.tolerance,
@@ -208,7 +211,8 @@ impl Solver {
     }
 }
 
-/// The arrays of a state lent to a solver of adhesion. The state gets them back even after an error, so that the next solve works.
+/// Moves h, p and u of a state to a solver of adhesion while that solves, instead of copying them. Dropping the struct moves them back, also after
+/// an error, so that the next solve works.
 struct Lent<'a> {
     solver: &'a mut adhesion::Solver,
     state: &'a mut State,

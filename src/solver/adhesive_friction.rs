@@ -1,8 +1,8 @@
-//! Friction of adhesive bodies. The contact pressures q bound the tractions, not the total pressures, which may pull (Derjaguin 1934). A shear
-//! strength tau0 of the contact adds to the bound:
+//! Friction of adhesive bodies. The contact pressures q bound the tractions (Derjaguin 1934). The total pressures p cannot, because they are negative
+//! where the attraction exceeds q. A shear strength tau0 of the contact adds to the bound:
 //!
 //! ```text
-//! |tractions| <= mu q + tau0  in C,     0 outside
+//! |traction| <= mu q + tau0   in C,     traction = 0   outside
 //! ```
 
 use super::tangential::{is_of_unlike_bodies, Turn};
@@ -15,15 +15,17 @@ use crate::memory::zeros;
 use crate::progress::Monitor;
 use crate::scene::{Friction, Scene};
 
-/// The bound as pressures and coefficients of a tangential problem: pressures 1 on C, and the bound as coefficient.
+/// The traction bound `mu q + tau0` as inputs of a tangential problem, whose bound is a product: the pressures are 1 on C, and the coefficients of
+/// friction are the bound.
 pub struct Bound {
-    /// 1 on C, 0 outside.
+    /// The pressures: 1 on C, 0 outside.
     pub pressing: Vec<f64>,
+    /// The coefficients of friction: the bound of each element, 0 outside C.
     bound: Vec<f64>,
 }
 
 impl Bound {
-    /// The bound from contact pressures q of n elements; C are elements with q > 0.
+    /// Computes the bound of n elements from their contact pressures `q(i)` and the shear strength tau0. C is where q > 0.
     pub fn new(friction: &Friction<'_>, strength: f64, n: usize, q: impl Fn(usize) -> f64) -> Result<Bound> {
         let field = || zeros::<f64>(n, "the bound of friction");
         let (mut pressing, mut bound) = (field()?, field()?);
@@ -36,13 +38,14 @@ impl Bound {
         Ok(Bound { pressing, bound })
     }
 
-    /// A friction with this bound.
+    /// Returns `friction` with this bound as its coefficients.
     pub fn of<'a>(&'a self, friction: &Friction<'a>) -> Friction<'a> {
         Friction { coefficient: Coefficient::PerElement(&self.bound), ..*friction }
     }
 }
 
-/// Calls `solve` with friction and pressures for contact pressures `q`. With adhesion they are those of the [bound](Bound).
+/// Calls `solve` with the friction and the pressures of a tangential problem with contact pressures `q`. Without adhesion these are the given ones,
+/// with adhesion those of [`Bound`].
 pub fn bounded<R>(
     scene: &Scene<'_>,
     friction: &Friction<'_>,
@@ -55,7 +58,7 @@ pub fn bounded<R>(
     solve(&bound.of(friction), &bound.pressing)
 }
 
-/// Rejects friction that changes the pressures.
+/// Refuses friction of unlike bodies, whose tractions change the pressures.
 pub fn check_alike(scene: &Scene<'_>) -> Result<()> {
     if scene.friction.is_none() || !is_of_unlike_bodies(scene)? {
         return Ok(());
@@ -66,7 +69,8 @@ pub fn check_alike(scene: &Scene<'_>) -> Result<()> {
 }
 
 impl Solver {
-    /// The tangential problem of a scene with adhesion, whose normal problem ended with `outcome`.
+    /// Solves the tangential problem of a scene with adhesion, whose normal problem ended with `outcome`. Returns the outcome of the normal problem
+    /// unless it converged, else that of the tangential one; and the report of friction if the scene has friction.
     pub(super) fn rub(
         &mut self,
         scene: &Scene<'_>,

@@ -1,39 +1,39 @@
-//! The request of a solve.
+//! The request of a solve: scene, options and start.
 
 use super::{Guess, Options};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::threads::Threads;
 
-/// The request of a solve.
+/// What a solve is asked for.
 #[derive(Clone, Copy)]
 pub(crate) struct Asked<'a> {
-    /// The scene, which is checked.
+    /// The scene. Its effects, distance and load are checked.
     pub scene: &'a Scene<'a>,
-    /// Its least undeformed distance.
+    /// The least undeformed distance of the scene; infinite if no element has a surface.
     pub lowest: f64,
     /// The options.
     pub options: &'a Options,
-    /// The caller's pressures and contact area.
+    /// The caller's pressures and contact area, if given.
     pub guess: Option<Guess<'a>>,
-    /// For estimates: whether all edges of the surface are at edges of elements.
+    /// Whether the surface ends exactly on edges of elements. Read by error estimates only.
     pub exact_edges: bool,
-    /// For estimates: whether it has no jumps.
+    /// Whether the surface has no jumps between two centres. Read by error estimates only.
     pub exact_jumps: bool,
 }
 
 impl<'a> Asked<'a> {
-    /// A solve without a guess, of a surface that may end anywhere.
+    /// A request without a guess. The surface may end and jump anywhere between the centres of elements.
     pub fn new((scene, lowest): (&'a Scene<'a>, f64), options: &'a Options) -> Asked<'a> {
         Asked { scene, lowest, options, guess: None, exact_edges: false, exact_jumps: false }
     }
 
-    /// The guess, if it gives the contact area.
+    /// The guess, if the caller prescribes its contact area (FIXED).
     pub fn area(&self) -> Option<Guess<'a>> {
         self.guess.filter(|_| self.options.is_fixed())
     }
 
-    /// The request with `scene`, whose undeformed distance differs and is checked here. Without a scene, the request is unchanged.
+    /// Replaces the scene of the request by one with another undeformed distance, which is checked here. None: the request is unchanged.
     pub fn on<'s>(self, scene: Option<&'s Scene<'s>>, threads: &Threads) -> Result<Asked<'s>>
     where
         'a: 's,

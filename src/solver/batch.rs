@@ -1,4 +1,4 @@
-//! Many problems at once: whole solves are spread over threads, each on one thread.
+//! Batches: many independent problems are distributed over threads, and each is solved on one thread.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -15,19 +15,19 @@ use crate::threads::Threads;
 pub struct Problem<'a> {
     /// The undeformed distance and the load; grid, bodies and influence coefficients must be those of the solver.
     pub scene: Scene<'a>,
-    /// The start, with GIVEN, and the contact area, with FIXED.
+    /// The pressures and contact area to start from (initial_guess GIVEN), or the prescribed contact area (active_set FIXED).
     pub guess: Option<Guess<'a>>,
 }
 
 impl Solver {
-    /// Solves many problems with the same options, as many at a time as the solver was set up with threads. Each solve runs on
-    /// one thread. `found(i, solved, state)` is called for each problem i, in any order, on the thread that solved it. `solved` is
-    /// that of [`solve`](Self::solve). `state` is the result, unless `solved` is an error. Element i of the returned list is the
-    /// value of this call.
+    /// Solves many problems with the same options. As many are solved at a time as the solver has threads, each on one thread.
     ///
-    /// A refused problem does not affect the others. Results have the same bits as those of one solve
-    /// after the other with one thread. PREVIOUS is refused, and so is a problem whose friction [continues](crate::scene::Previous::Kept): the
-    /// order of the solves is not known. This solver's own [`state`](Self::state) stays as it is.
+    /// `found(i, solved, state)` is called for each problem i, in any order, on the thread that solved it. `solved` is the value of
+    /// [`solve`](Self::solve), and `state` the result, unless `solved` is an error. Element i of the returned list is what `found` returned for i.
+    ///
+    /// A refused problem does not affect the others. Results have the bits of solves one after the other on one thread. The order of the solves
+    /// is not known, therefore PREVIOUS is refused, and so is a problem whose friction [continues](crate::scene::Previous::Kept) a step. The
+    /// result of this solver, [`state`](Self::state), does not change.
     pub fn solve_batch<R: Send>(
         &mut self,
         problems: &[Problem<'_>],
@@ -43,11 +43,11 @@ impl Solver {
             *results[i].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
         })?;
         let results = results.into_iter().map(|result| result.into_inner().unwrap_or_else(PoisonError::into_inner));
-        // `distribute` has done all of them.
+        // After `distribute` every problem has a result, so `flatten` drops none.
         Ok(results.flatten().collect())
     }
 
-    /// Refuses options that exclude a batch.
+    /// Refuses options with which a batch cannot be solved.
     pub(crate) fn check_batch(&self, options: &Options) -> Result<()> {
         self.set_up.check_options(options)?;
         if options.initial_guess == InitialGuess::Previous {
@@ -59,7 +59,7 @@ impl Solver {
         Ok(())
     }
 
-    /// Refuses a problem that would continue from its worker's last solve.
+    /// Refuses a problem that continues a previous step: in a batch this would be whatever its worker solved last.
     pub(crate) fn check_problem(scene: &Scene<'_>) -> Result<()> {
         match effects::continuing(scene).next() {
             Some((.., Continues { member, instead, .. })) => invalid(format!(
@@ -69,7 +69,8 @@ impl Solver {
         }
     }
 
-    /// Calls `work(i, worker)` for each `i < count` on a free worker.
+    /// Calls `work(i, worker)` once for each `i < count`; free workers take the numbers in increasing order. Workers are solvers of one thread each,
+    /// kept for later batches.
     pub(crate) fn distribute(&mut self, count: usize, work: impl Fn(usize, &mut Solver) + Sync + Send) -> Result<()> {
         let workers = self.problem.threads.count().min(count);
         let mut crew = std::mem::take(&mut self.workers);
@@ -80,7 +81,7 @@ impl Solver {
         let foreman = &*self;
         let take = |worker: &mut Option<Solver>| {
             if worker.is_none() {
-                // If this fails, the other workers do its share.
+                // Without memory for this worker, the other ones take its numbers.
                 match foreman.worker() {
                     Ok(new) => *worker = Some(new),
                     Err(error) => *refusal.lock().unwrap_or_else(PoisonError::into_inner) = Some(error),
@@ -103,7 +104,7 @@ impl Solver {
         }
     }
 
-    /// A solver like this one, of one thread. It accepts the same options.
+    /// Sets up a solver of one thread with the coefficients of this one. It accepts this solver's options, including its number of threads.
     pub(super) fn worker(&self) -> Result<Solver> {
         let (coefficients, set_up) = (self.problem.coefficients.clone(), self.set_up.clone());
         let worker = Solver::of(self.problem.grid, coefficients, set_up, &Threads::One)?;

@@ -5,12 +5,13 @@ use crate::error::Result;
 use crate::methods::Task;
 use crate::scene::Load;
 
-/// The iterate with the least violation so far.
+/// The iterate with the least [violation](Survey::violation) so far.
 #[derive(Default)]
 pub struct Best {
-    /// The least violation. Infinite without an iterate.
+    /// The violation of this iterate: the larger of its relative residual and relative violation. Infinite without an iterate.
     pub violation: f64,
-    found: Snapshot,
+    /// Its pressures, contact area and approach.
+    snapshot: Snapshot,
 }
 
 impl Best {
@@ -19,29 +20,29 @@ impl Best {
         self.violation = f64::INFINITY;
     }
 
-    /// Bytes held.
+    /// Bytes of the iterate.
     pub fn bytes(&self) -> usize {
-        self.found.bytes()
+        self.snapshot.bytes()
     }
 
-    /// Keeps an iterate whose u is A p, if it is better than those before.
+    /// Copies an iterate if its violation is less than that of all iterates before. Its u must be A p.
     pub fn note(&mut self, state: &State, violation: f64) -> Result<()> {
         if violation < self.violation {
-            self.found.reserve(state, "the best iterate")?;
-            self.found.copy_from(state);
+            self.snapshot.reserve(state, "the best iterate")?;
+            self.snapshot.copy_from(state);
             self.violation = violation;
         }
         Ok(())
     }
 
-    /// Sets the state to the best iterate, with admissible pressures, the prescribed force and a fresh u = A p. With a prescribed
-    /// approach the result is never worse than p = 0. Returns the survey of the result.
+    /// Sets the state to the better of itself and the best iterate, with admissible pressures, the prescribed force and u = A p by a product. With a
+    /// prescribed approach, the result is p = 0 if both are worse. Returns the survey of the result.
     pub fn restore<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<Survey> {
-        // The measures of the state are no longer valid.
+        // The monitor's survey belongs to the state before.
         task.monitor.survey = None;
         let (state, set) = (&mut *task.state, task.set);
         for (i, p) in state.p.iter_mut().enumerate() {
-            // The comparison is false for NaN.
+            // Infinite pressures become 0, and so does NaN, for which the comparison is false.
             *p = if p.abs() < f64::INFINITY { *p } else { 0.0 };
             if S::LIMITED && state.at_limit[i] {
                 *p = set.limit(i);
@@ -52,11 +53,11 @@ impl Best {
             task.problem.refresh(state, set)?;
         }
         let mut survey = Survey::of(state);
-        let now = survey.violation(set);
+        let of_state = survey.violation(set);
         let by_approach = matches!(state.load, Load::Approach(_));
-        if self.violation < now || !(now <= f64::MAX) {
+        if self.violation < of_state || !(of_state <= f64::MAX) {
             if self.violation.is_finite() {
-                self.found.restore_to(state);
+                self.snapshot.restore_to(state);
             } else {
                 state.p.fill(0.0);
                 state.at_limit.fill(false);
@@ -65,13 +66,14 @@ impl Best {
             survey = Survey::of(state);
         }
         if !by_approach && !survey.violation(set).is_finite() {
-            // A uniform pressure on C.
+            // From p = 0, `refresh` makes the pressures carry the force: a uniform pressure on C.
             state.p.fill(0.0);
             task.problem.refresh(state, set)?;
             survey = Survey::of(state);
         }
-        let found = survey.violation(set);
-        if by_approach && !(found <= 1.0) || !found.is_finite() {
+        let restored = survey.violation(set);
+        // p = 0 has the violation 1.
+        if by_approach && !(restored <= 1.0) || !restored.is_finite() {
             state.p.fill(0.0);
             state.u.fill(0.0);
             if !S::FIXED {

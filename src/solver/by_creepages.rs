@@ -1,15 +1,19 @@
-//! Forces on unlike bodies. If turns by force do not converge, or their last pressures cannot carry the force, turns with held creepages follow.
+//! Given tangential forces on unlike bodies, found by prescribed creepages.
 //!
-//! With a held creepage the turns of tractions and pressures converge quickly, also near full slip. The resulting forces are compared with the
-//! given ones. The next creepage is that of a secant (Broyden 1965); with one force it lies between two creepages known to carry too much and too
-//! little.
+//! A turn solves the tangential problem with the last pressures, then the normal problem with the displacements by the tractions. At first the
+//! tangential problems of the turns have the given forces (turns by force). If these turns do not converge, or if the last pressures cannot carry
+//! the forces, turns with prescribed creepages follow (held creepages).
 //!
-//! *Forces beyond full slip.* Near full slip the largest force may lie at a finite creepage, as pressures change with the creepage, and with them
-//! the force that they carry. So creepages about those of turns by force are tried until one reaches the force, and then creepages near the largest
-//! force found (module [`creepage_peak`](super::creepage_peak)). A force that none reaches is refused.
+//! With held creepages turns converge quickly, also near full slip. The resulting forces are compared with the given ones. The next creepages are
+//! those of a secant method (Broyden 1965). With one given force, the next creepage also lies between two known ones, of which one carries too much
+//! and the other too little.
+//!
+//! *Forces near full slip.* Pressures change with the creepage, and so does the largest tangential force that they carry. Therefore the largest
+//! force may belong to a finite creepage. The search tries creepages around those of the turns by force until one reaches the given force, and then
+//! creepages near the largest force found (module [`creepage_peak`](super::creepage_peak)). If none reaches the given force, the scene is refused.
 
 use super::creepage_peak::Peak;
-use super::creepage_trials::{Place, Trials};
+use super::creepage_trials::{Trial, Trials};
 use super::tangential_turn::{sharper, TangentialTurn, ROUND_OFF};
 use super::turns::InTurns;
 use crate::contact::Survey;
@@ -19,30 +23,32 @@ use crate::friction::{dot, length, Vector, FINISHING_PRODUCTS};
 use crate::progress::Outcome;
 use crate::scene::{Load, Scene};
 
-/// If forces miss less than CLOSE_FORCES times mu N, tractions by force are tried with the same pressures, with
-/// [`FINISHING_PRODUCTS`] products.
+/// If the forces of held creepages differ from the given ones by less than this times mu N, one tangential problem with the given forces is tried. It
+/// has the last pressures, and [`FINISHING_PRODUCTS`] products.
 const CLOSE_FORCES: f64 = 1e-4;
-/// Most creepages tried between those that bracket the force.
+/// Most creepages that are tried after the first one that reaches the force.
 const MOST_TRIALS: u32 = 30;
-/// Creepages that are tried, relative to those of turns by force. With two forces, those from OPPOSITE_FROM on are
-/// opposite to the force.
+/// Creepages of the search for one that reaches the force, relative to those of the turns by force.
 const TRIED_RATIOS: [f64; 14] = [1.0, 1.3, 2.0, 4.0, 16.0, 64.0, 256.0, 1e3, 1e4, FAR, 0.75, 0.5, 0.25, 0.1];
+/// If both forces are given, creepages of this ratio and more are opposite to the given force, as in full slip.
 const OPPOSITE_FROM: f64 = 64.0;
-/// If turns by force miss more than this part of mu N, only the creepage FAR is tried: before full slip pressures carry at most some hundredths more
-/// (0.9 % on a flat punch of mu = 1 or 2 on a rigid body).
+/// If the pressures of the turns by force carry too little by more than this part of mu N, only the ratio FAR is tried. At smaller creepages
+/// pressures carry at most a few per cent more than in full slip (0.9 % for a flat punch on a rigid body with mu = 1 or 2).
 const BEYOND_REACH: f64 = 3e-2;
+/// The ratio at which all elements slip.
 const FAR: f64 = 1e6;
-/// Largest creepage times the length rolled, over the displacement of full slip. All elements slip long before. A solve refuses 1e30 times that
-/// displacement, and the pressures of a turn change it by less than the factor between.
+/// The largest held creepage times the length rolled, relative to the displacement by the tractions of full slip. All elements slip at much smaller
+/// creepages. A tangential solve refuses slips above 1e30 times that displacement; the factor 1e10 between the two limits exceeds the change of the
+/// displacement by the pressures of a turn.
 const FARTHEST: f64 = 1e20;
 
-/// The directions of given forces.
+/// Whether the force is given, in x and in y.
 fn given(scene: &Scene<'_>) -> [bool; 2] {
     scene.friction.map_or([false; 2], |friction| friction.has_forces())
 }
 
 impl InTurns<'_, '_, '_> {
-    /// Continues turns by force, which ended with `outcome`, by turns with creepages if needed.
+    /// Continues turns by force, which ended with `outcome`, by turns with held creepages if those are needed. Returns the outcome of all turns.
     pub(super) fn meet_by_creepages(&mut self, outcome: Outcome) -> Result<Outcome> {
         let tried = |friction: &&mut TangentialTurn<'_>| {
             friction.is_near() || outcome == Outcome::Stagnated && friction.by_force
@@ -55,7 +61,7 @@ impl InTurns<'_, '_, '_> {
         {
             return Ok(outcome);
         }
-        let Some(from) = place(friction) else { return Ok(outcome) };
+        let Some(from) = last_trial(friction) else { return Ok(outcome) };
         let normal = self.monitor.survey.as_ref().map_or(f64::INFINITY, Survey::relative_residual);
         let is_done = outcome == Outcome::IterationLimit || normal < ROUND_OFF;
         if outcome != Outcome::Converged && friction.is_at_round_off() && is_done {
@@ -69,9 +75,9 @@ impl InTurns<'_, '_, '_> {
         log::info!("turns by force leave {:e} of mu N, turns with creepages go on", from.missing());
         let mut refusal = friction.take_refusal();
         let is_beyond = refusal.is_some() && from.missing() > BEYOND_REACH;
-        let parts = if is_beyond { &[FAR] } else { &TRIED_RATIOS[..] };
+        let ratios = if is_beyond { &[FAR] } else { &TRIED_RATIOS[..] };
         let mut peak = Peak::default();
-        let (from, mut end) = self.look_about(from, parts, &mut peak)?;
+        let (from, mut end) = self.search_around(from, ratios, &mut peak)?;
         if let (Some(from), Outcome::Converged) = (from, end) {
             refusal = None;
             end = self.bracket(from)?;
@@ -87,36 +93,38 @@ impl InTurns<'_, '_, '_> {
         Ok(end)
     }
 
-    /// A place that reaches the force, among creepages about those of turns by force; none if there is none, or if the search does not converge.
-    fn look_about(&mut self, from: Place, parts: &[f64], peak: &mut Peak) -> Result<(Option<Place>, Outcome)> {
+    /// Searches for creepages that reach the force: first `ratios` times those of `from`, the last trial of the turns by force, then those that
+    /// `peak` proposes. Returns None if no trial reaches the force, or if the turns of one end by a limit or by the callback.
+    fn search_around(&mut self, from: Trial, ratios: &[f64], peak: &mut Peak) -> Result<(Option<Trial>, Outcome)> {
         let given = given(self.scene);
         let wanted = self.turns.friction.as_ref().map_or([0.0; 2], TangentialTurn::wanted);
         let along = [0, 1].map(|k| if given[k] { from.creepage[k] } else { 0.0 });
-        // For a creepage of 0 all parts are equal.
-        let parts = if length(along) > 0.0 { parts } else { &parts[..1] };
-        let (has_peak, mut parts) = (parts.len() > 1 && given != [true; 2], parts.iter().copied());
-        while let Some(part) = parts.next().or_else(|| if has_peak { peak.next() } else { None }) {
-            // Far away both forces are opposite to the creepages.
-            let is_far = part >= OPPOSITE_FROM && given == [true; 2] && length(wanted) > 0.0;
+        // All multiples of a creepage of 0 are equal.
+        let ratios = if length(along) > 0.0 { ratios } else { &ratios[..1] };
+        let (has_peak, mut ratios) = (ratios.len() > 1 && given != [true; 2], ratios.iter().copied());
+        while let Some(ratio) = ratios.next().or_else(|| if has_peak { peak.next() } else { None }) {
+            // Near full slip the force is opposite to the creepages.
+            let is_far = ratio >= OPPOSITE_FROM && given == [true; 2] && length(wanted) > 0.0;
             let against = wanted.map(|force| -force / length(wanted) * length(along));
-            let held = if is_far { against } else { along }.map(|c| part * c);
+            let held = if is_far { against } else { along }.map(|c| ratio * c);
             let end = self.turns_with(held)?;
             if end != Outcome::Converged && end != Outcome::Stagnated {
                 return Ok((None, end));
             }
-            // The force is reached or exceeded.
-            let reaches = |at: &Place| at.missing() <= self.options.tolerance || dot(at.excess, wanted) >= 0.0;
-            let found = self.turns.friction.as_ref().and_then(place).filter(|_| end == Outcome::Converged);
-            if let Some(place) = found.filter(reaches) {
-                return Ok((Some(place), end));
+            // Whether the forces of a trial are the given ones, or exceed them.
+            let reaches = |trial: &Trial| trial.missing() <= self.options.tolerance || dot(trial.excess, wanted) >= 0.0;
+            let found = self.turns.friction.as_ref().and_then(last_trial).filter(|_| end == Outcome::Converged);
+            if let Some(trial) = found.filter(reaches) {
+                return Ok((Some(trial), end));
             }
-            peak.add(part, found.map_or(f64::NEG_INFINITY, |place| dot(place.excess, wanted) / length(wanted)));
+            peak.add(ratio, found.map_or(f64::NEG_INFINITY, |trial| dot(trial.excess, wanted) / length(wanted)));
         }
         Ok((None, Outcome::Converged))
     }
 
-    /// Finds the creepages that carry the force, from a place that reaches it.
-    fn bracket(&mut self, from: Place) -> Result<Outcome> {
+    /// Finds the creepages whose forces are the given ones, from a trial that reaches them. Stagnated: the creepages with the least missing force are
+    /// solved last.
+    fn bracket(&mut self, from: Trial) -> Result<Outcome> {
         let scale = self.turns.friction.as_ref().map_or(0.0, TangentialTurn::largest_slip);
         let (mut found, mut trials) = (from, Trials::new(from, given(self.scene), scale));
         for _ in 0..MOST_TRIALS {
@@ -135,12 +143,12 @@ impl InTurns<'_, '_, '_> {
             if end != Outcome::Converged {
                 return Ok(end);
             }
-            found = match self.turns.friction.as_ref().and_then(place) {
+            found = match self.turns.friction.as_ref().and_then(last_trial) {
                 Some(found) => found,
                 None => break,
             };
         }
-        // A solve that does not converge returns the best.
+        // Without convergence the result is the best trial, which is solved again.
         let best = trials.best();
         if found.missing() > best.missing() {
             self.turns_with(best.creepage)?;
@@ -148,7 +156,7 @@ impl InTurns<'_, '_, '_> {
         Ok(Outcome::Stagnated)
     }
 
-    /// Turns with held creepages. Creepages that are too large find nothing and are not refused, as the caller did not give them.
+    /// Makes turns with held creepages. Creepages above [`FARTHEST`] end as Stagnated. They are no error of the caller, who did not give them.
     fn turns_with(&mut self, creepage: Vector) -> Result<Outcome> {
         let Some(friction) = &mut self.turns.friction else { return Ok(Outcome::Stagnated) };
         if !(length(creepage) <= FARTHEST * friction.full_displacement()) {
@@ -158,7 +166,8 @@ impl InTurns<'_, '_, '_> {
         self.turn_about(&sharper(self.options), (Outcome::Converged, false))
     }
 
-    /// Solves for tractions by force with the last pressures. Returns whether both problems are then solved.
+    /// Solves the tangential problem once with the given forces and the last pressures. Returns whether this solves the tangential and the normal
+    /// problem.
     fn finish(&mut self) -> Result<bool> {
         let InTurns { solver, turns, monitor, .. } = self;
         if let Some(friction) = &mut turns.friction {
@@ -175,7 +184,7 @@ impl InTurns<'_, '_, '_> {
     }
 }
 
-/// Whether all pressures carry the same tangential force.
+/// Whether the largest tangential force does not depend on the pressures: it is mu N, with N and mu given.
 fn carries_always(scene: &Scene<'_>) -> bool {
     let is_uniform = |friction: &crate::scene::Friction<'_>| {
         matches!(friction.coefficient, Coefficient::Uniform(_))
@@ -185,9 +194,9 @@ fn carries_always(scene: &Scene<'_>) -> bool {
     matches!(scene.load, Load::Force(_)) && scene.friction.as_ref().is_some_and(is_uniform)
 }
 
-/// The place of the last solve.
-fn place(friction: &TangentialTurn<'_>) -> Option<Place> {
+/// The creepages and the excess of the forces of the last solve; None if nothing is carried.
+fn last_trial(friction: &TangentialTurn<'_>) -> Option<Trial> {
     let carried = friction.found.as_ref()?.carried;
     let (excess, creepage) = friction.excess()?;
-    (carried > 0.0).then(|| Place { creepage, excess: excess.map(|excess| excess / carried) })
+    (carried > 0.0).then(|| Trial { creepage, excess: excess.map(|excess| excess / carried) })
 }

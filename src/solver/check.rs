@@ -1,4 +1,4 @@
-//! Checks before a solve: scenes that differ from the set-up, invalid guesses, units out of range.
+//! Checks before a solve: whether the scene and the options are those of the set-up, the initial guess, and the range of the units.
 
 use super::{Asked, Guess, InitialGuess, Method, Options, SetUp};
 use crate::contact::Problem;
@@ -8,7 +8,7 @@ use crate::powers::LARGEST;
 use crate::scene::{Load, Scene};
 
 impl SetUp {
-    /// Rejects a solve after a table could not be set.
+    /// Refuses a solve if the last attempt to set a table of coefficients failed, because then there are none.
     pub fn check_table(&self) -> Result<()> {
         if self.lacks_table {
             return invalid("influence could not be set the last time: set it again".into());
@@ -16,7 +16,8 @@ impl SetUp {
         Ok(())
     }
 
-    /// Rejects a scene or options that differ from the set-up, and unsupported combinations of effects. Distance and load were checked before.
+    /// Refuses a scene or options that differ from the set-up, and options that do not go with the scene's effects or coefficients. The distance and
+    /// the size of the load are checked elsewhere.
     pub fn check(&self, scene: &Scene<'_>, options: &Options, problem: &Problem) -> Result<()> {
         self.check_options(options)?;
         scene.check_free_load(options.is_fixed())?;
@@ -40,13 +41,13 @@ impl SetUp {
         )))
     }
 
-    /// Rejects a scene whose grid, bodies or effects differ from the set-up. Its distance and its load are not checked.
+    /// Refuses a scene whose grid, bodies or effects differ from the set-up. The distance and the load are not checked.
     pub fn check_scene(&self, scene: &Scene<'_>, problem: &Problem) -> Result<()> {
         if let Some(difference) = scene.grid.differs(&problem.grid) {
             return invalid(difference);
         }
         effects::check_effects(scene)?;
-        // With the caller's coefficients bodies are not used.
+        // With the caller's coefficients the elastic constants of the bodies are not used.
         if !problem.given {
             effects::check_bodies(scene)?;
         }
@@ -58,7 +59,7 @@ impl SetUp {
         }
     }
 
-    /// Rejects options that differ from the set-up.
+    /// Refuses invalid options, and those that differ from the set-up.
     pub fn check_options(&self, options: &Options) -> Result<()> {
         options.check()?;
         let (now, then) = (options.cycle, self.options.cycle);
@@ -83,18 +84,18 @@ impl SetUp {
     }
 }
 
-/// Rejects a guess that is missing, too short or not finite.
+/// Refuses a guess that is missing, has not one value per element, or is not finite; and a prescribed contact area that is empty.
 pub fn guess(Asked { scene, options, guess, .. }: Asked<'_>) -> Result<()> {
     let grid = &scene.grid;
-    let fixed = options.is_fixed();
+    let is_fixed = options.is_fixed();
     let Some(guess) = guess else {
         return match options.initial_guess {
-            _ if fixed => invalid("active_set is FIXED, but no contact area is given".into()),
+            _ if is_fixed => invalid("active_set is FIXED, but no contact area is given".into()),
             InitialGuess::Given => invalid("initial_guess is GIVEN, but no pressures and contact area are".into()),
             _ => Ok(()),
         };
     };
-    if !fixed && options.initial_guess != InitialGuess::Given {
+    if !is_fixed && options.initial_guess != InitialGuess::Given {
         return Ok(());
     }
     if guess.pressure.len() != grid.len() || guess.contact.len() != grid.len() {
@@ -105,11 +106,11 @@ pub fn guess(Asked { scene, options, guess, .. }: Asked<'_>) -> Result<()> {
             grid.len()
         ));
     }
-    let surface = |(inside, h): (&bool, &f64)| *inside && h.is_finite();
-    if fixed && !guess.contact.iter().zip(scene.undeformed_distance).any(surface) {
+    let has_surface = |(inside, h): (&bool, &f64)| *inside && h.is_finite();
+    if is_fixed && !guess.contact.iter().zip(scene.undeformed_distance).any(has_surface) {
         return invalid("active_set is FIXED, but the given contact area is empty, or has no surface".into());
     }
-    if fixed {
+    if is_fixed {
         scene.check_area(Some(guess.contact))?;
     }
     match guess.pressure.iter().find(|p| !p.is_finite()) {
@@ -118,32 +119,34 @@ pub fn guess(Asked { scene, options, guess, .. }: Asked<'_>) -> Result<()> {
     }
 }
 
-/// Rejects units in which pressures, displacements or their squares leave the range of double precision. `largest`: the largest absolute coefficient.
+/// Refuses units in which pressures, displacements or their squares leave the range of double precision. `largest` is the largest absolute influence
+/// coefficient.
 pub fn range(asked: Asked<'_>, problem: &Problem, largest: f64) -> Result<()> {
-    let (Asked { scene, lowest, .. }, fixed) = (asked, asked.area());
+    let (Asked { scene, lowest, .. }, given_area) = (asked, asked.area());
     let influence = problem.self_influence();
     let h = scene.undeformed_distance;
-    // The largest absolute value on the given contact area.
-    let largest_on = |fixed: Guess<'_>, of: &dyn Fn(f64) -> f64| {
-        let on_contact = h.iter().zip(fixed.contact).filter(|(h, inside)| **inside && h.is_finite());
+    // The largest |of(h)| on the given contact area.
+    let largest_on = |area: Guess<'_>, of: &dyn Fn(f64) -> f64| {
+        let on_contact = h.iter().zip(area.contact).filter(|(h, inside)| **inside && h.is_finite());
         on_contact.fold(0.0, |largest: f64, (h, _)| largest.max(of(*h).abs()))
     };
-    // With a prescribed force the approach is a mean of distances, which may have any offset.
+    // Orders of the pressures, of the displacements, and, with a prescribed force, of the distances. The approach is then a mean of h + u, and all h
+    // may have a large offset.
     let (pressure, displacement, farthest) = match scene.load {
         Load::Approach(approach) => {
-            let depth = match fixed {
-                Some(fixed) => largest_on(fixed, &|h| h - approach),
+            let depth = match given_area {
+                Some(area) => largest_on(area, &|h| h - approach),
                 None if lowest.is_finite() => (approach - lowest).max(0.0),
                 None => 0.0,
             };
-            // A single element with two periods has the coefficient 0 and carries its limit. Without penetration there is no pressure.
+            // A single element with two periods has the coefficient 0; its pressure is at its limit. Without penetration there is no pressure.
             let limit = effects::limits(scene).filter(|_| influence == 0.0).map(|limit| limit.0.at(0));
             let pressure = if depth == 0.0 { 0.0 } else { limit.unwrap_or(depth / influence) };
             (pressure, depth, 0.0)
         }
         Load::Force(force) => {
             let pressure = force.abs() / scene.grid.element_area();
-            let farthest = fixed.map_or(lowest.abs(), |fixed| largest_on(fixed, &|h| h));
+            let farthest = given_area.map_or(lowest.abs(), |area| largest_on(area, &|h| h));
             (pressure, pressure * influence, farthest)
         }
     };
@@ -166,8 +169,8 @@ pub fn range(asked: Asked<'_>, problem: &Problem, largest: f64) -> Result<()> {
     areas(scene, pressure, loaded)
 }
 
-/// Rejects units in which areas of elements and forces leave the range of double precision. The caller's coefficients do not bound the sizes of
-/// elements.
+/// Refuses units in which the area of an element or the force leaves the range of double precision. [`range`] does not imply this: the caller's
+/// coefficients do not depend on the sizes of elements.
 fn areas(scene: &Scene<'_>, pressure: f64, loaded: bool) -> Result<()> {
     let area = scene.grid.element_area();
     let force = match scene.load {

@@ -1,52 +1,58 @@
-//! The search for the creepages of given forces, by turns with held creepages.
+//! The search for the creepages whose forces are the given ones: a secant method (Broyden 1965), with bisection if one force is given. The caller
+//! solves each trial.
 
 use crate::friction::{dot, length, Vector};
 
-/// A trial is good if its missing force is at most this part of the least so far.
+/// A trial makes progress if its missing force is at most this part of the least one so far.
 const PROGRESS: f64 = 0.5;
-/// With two forces: a trial that misses more than this times the least is followed by one halfway back.
+/// With two given forces: after a trial that misses more than this times the least missing force, the next trial lies halfway to the best one.
 const WORSE: f64 = 2.0;
-/// The first step along the creepages, relative to these, at most MOST_STEPS times the missing force. No step exceeds
-/// LONGEST_STEP times the creepages.
+/// The first step along the creepages, relative to their length, unless the excess of the force is larger.
 const FIRST_STEP: f64 = 0.1;
+/// Bound on this first step, over the excess of the force along the creepages.
 const MOST_STEPS: f64 = 1e6;
+/// The longest step, relative to the length of the creepages.
 const LONGEST_STEP: f64 = 0.8;
-/// Least size of creepages in step lengths, relative to the slips.
+/// Creepages below this part of the slips count as this large where a step is relative to their length.
 const SMALL_CREEPAGE: f64 = 1e-3;
 
-/// A place in the search.
+/// Creepages and their forces.
 #[derive(Clone, Copy)]
-pub struct Place {
+pub struct Trial {
     /// Creepages times the length rolled.
     pub creepage: Vector,
-    /// The excess of the forces, relative to mu N.
+    /// The forces less the given ones, relative to mu N; 0 in directions without a given force.
     pub excess: Vector,
 }
 
-impl Place {
-    /// The size of the excess.
+impl Trial {
+    /// The length of the excess.
     pub fn missing(&self) -> f64 {
         length(self.excess)
     }
 }
 
-/// The creepages to try.
+/// The state of the search.
 pub struct Trials {
+    /// Whether the force is given, in x and in y.
     given: [bool; 2],
-    /// The change of creepages per excess of force.
+    /// The secant matrix: a step of the creepages is this matrix times the excess.
     slope: [Vector; 2],
-    last: Option<Place>,
-    /// With one force: the last creepage that carried more, and the last that carried less.
+    last: Option<Trial>,
+    /// With one given force: the last creepage whose force was too large, and the last whose force was too small.
     between: [Option<f64>; 2],
-    best: Place,
+    /// The trial with the least missing force.
+    best: Trial,
+    /// Trials in succession without [`PROGRESS`].
     bad: u32,
-    /// Creepages below this are small.
+    /// [`SMALL_CREEPAGE`] times the slips.
     small: f64,
 }
 
 impl Trials {
-    /// Begins at a place; slips are of the order of `scale`. Across the creepages forces turn with them; along them the first step is short.
-    pub fn new(from: Place, given: [bool; 2], scale: f64) -> Trials {
+    /// Begins at a solved trial; slips are of the order of `scale`. A step across the creepages turns the force by the same angle, which gives the
+    /// slope there. The slope along the creepages is not known: the first step there is short.
+    pub fn new(from: Trial, given: [bool; 2], scale: f64) -> Trials {
         let only = |v: Vector| [0, 1].map(|k| if given[k] { v[k] } else { 0.0 });
         let small = SMALL_CREEPAGE * scale;
         let size = length(only(from.creepage)).max(small);
@@ -64,26 +70,26 @@ impl Trials {
         Trials { given, slope, last: None, between: [None; 2], best: from, bad: 0, small }
     }
 
-    /// The place with the least missing force.
-    pub fn best(&self) -> Place {
+    /// The trial with the least missing force.
+    pub fn best(&self) -> Trial {
         self.best
     }
 
-    /// The next creepages after a place.
-    pub fn next(&mut self, at: Place) -> Vector {
-        let Place { creepage, excess } = at;
-        if let Some(before) = self.last.replace(at) {
+    /// Learns from a solved trial, and returns the creepages of the next one.
+    pub fn next(&mut self, trial: Trial) -> Vector {
+        let Trial { creepage, excess } = trial;
+        if let Some(before) = self.last.replace(trial) {
             let change = |now: Vector, then: Vector| [0, 1].map(|k| now[k] - then[k]);
             self.learn(change(creepage, before.creepage), change(excess, before.excess));
         }
-        let missing = at.missing();
+        let missing = trial.missing();
         self.bad = if missing > PROGRESS * self.best.missing() { self.bad + 1 } else { 0 };
         if missing < self.best.missing() {
-            self.best = at;
+            self.best = trial;
         }
-        let by = self.slope.map(|row| dot(row, excess));
-        let shorter = (LONGEST_STEP * length(creepage).max(self.small) / length(by)).min(1.0);
-        let secant = [0, 1].map(|k| creepage[k] + shorter * by[k]);
+        let step = self.slope.map(|row| dot(row, excess));
+        let shorter = (LONGEST_STEP * length(creepage).max(self.small) / length(step)).min(1.0);
+        let secant = [0, 1].map(|k| creepage[k] + shorter * step[k]);
         match self.given {
             [true, true] if missing > WORSE * self.best.missing() => {
                 [0, 1].map(|k| 0.5 * (creepage[k] + self.best.creepage[k]))
@@ -98,25 +104,26 @@ impl Trials {
         }
     }
 
-    /// The next creepage with one force: that of the secant if it lies between the bounds.
-    fn between(&mut self, at: f64, excess: f64, secant: f64) -> f64 {
-        self.between[usize::from(excess < 0.0)] = Some(at);
+    /// The next creepage with one given force: that of the secant if it lies between the bounds, else their middle.
+    fn between(&mut self, creepage: f64, excess: f64, secant: f64) -> f64 {
+        self.between[usize::from(excess < 0.0)] = Some(creepage);
         match self.between {
             [Some(more), Some(less)] => {
                 let inside = (secant - more) * (less - secant) > 0.0;
+                // Every third trial without progress bisects.
                 if inside && self.bad % 3 != 2 {
                     secant
                 } else {
                     0.5 * (more + less)
                 }
             }
-            // Forces fall as creepages grow.
-            _ if (secant - at) * excess > 0.0 => secant,
-            _ => at + (at - secant),
+            // A force decreases as its signed creepage increases. A secant step in the wrong direction is reversed.
+            _ if (secant - creepage) * excess > 0.0 => secant,
+            _ => creepage + (creepage - secant),
         }
     }
 
-    /// Broyden's update: a change of creepages by dc changed the forces by de.
+    /// Broyden's update of the slope, after a change of the creepages by dc changed the excess by de.
     fn learn(&mut self, dc: Vector, de: Vector) {
         let by = self.slope.map(|row| dot(row, de));
         let along = [0, 1].map(|k| dc[0] * self.slope[0][k] + dc[1] * self.slope[1][k]);

@@ -1,4 +1,4 @@
-//! The errors of a solve: of its normal problem, and of its friction.
+//! The estimated discretisation errors of a solve: of its normal problem, and of its friction.
 
 use super::estimates::{self, Curvature, Parts};
 use super::options::Options;
@@ -9,8 +9,8 @@ use crate::progress::Monitor;
 use crate::scene::Scene;
 
 impl Solver {
-    /// The errors of the report and the ledger. Estimates do not cover reached limits, which change the rim, and row tables, whose displacements
-    /// depend on the row.
+    /// Writes the estimated errors of the report and the ledger. There are none in three cases: elements are at their pressure limit, which changes
+    /// the pressures at the rim of the contact; coefficients are not symmetric; and the contact area is given.
     pub(super) fn estimate(
         &self,
         scene: &Scene<'_>,

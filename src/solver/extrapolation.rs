@@ -1,12 +1,14 @@
-//! Extrapolation of turns (Anderson 1965).
+//! Extrapolation of the fixed-point iteration between the normal and the tangential problem (Anderson 1965). A turn maps the distance x of the normal
+//! problem to the distance y with the displacements by the new tractions.
 //!
 //! ```text
-//! x: the distance of the normal problem,   y: the distance after the turn,   r = y - x
-//! g: |r - sum over j of g_j dr_j| least,                     dr_j, dy_j: changes of r and y from turn to turn, of the last ones
-//! x = y - sum over j of g_j dy_j
+//! r = y - x                                  the residual of a turn
+//! dr_j, dy_j                                 the changes of r and y in the last turns
+//! g minimises |r - sum over j of g_j dr_j|
+//! next x = y - sum over j of g_j dy_j
 //! ```
 //!
-//! Turns of unlike bodies near full slip are slow in some modes: the creepage, and the sizes of the stick areas.
+//! For unlike bodies near full slip plain turns converge slowly in a few modes: the creepage, and the sizes of the stick areas.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::{factor, solve};
@@ -17,30 +19,32 @@ use crate::error::Result;
 use crate::memory::reserve;
 use crate::sums::in_blocks;
 
-/// Number of kept changes from turn to turn. Unlike bodies at .9997 of mu N and a tolerance of 1e-9, 16 x 16 elements, take more than 50 turns with
-/// none, or with one as in Irons and Tuck, and 15 with five.
+/// Number of kept changes dr_j, dy_j. Unlike bodies on 16 x 16 elements, with a force of .9997 mu N and a tolerance of 1e-9, take 15 turns with five.
+/// They take more than 50 turns with none, and also with one, which is the method of Irons and Tuck.
 const KEPT_CHANGES: usize = 5;
 
-/// Round-off of the Gram matrix, relative to its trace: products of numbers with a round-off of 1e-16.
+/// This part of the trace is added to the diagonal of the Gram matrix, because its entries have round-off: products of numbers with a round-off of
+/// 1e-16.
 const ROUND_OFF: f64 = 1e-14;
 
-/// A turn, or the change from one to the next: r and y.
+/// r and y of a turn, or their changes from one turn to the next.
 #[derive(Debug, Default)]
 struct Pair {
     r: Vec<f64>,
     y: Vec<f64>,
 }
 
-/// The turns so far.
+/// The last turn and the changes before it.
 #[derive(Debug, Default)]
 pub struct Extrapolation {
+    /// r and y of the last turn; empty before the first.
     last: Pair,
     /// The changes, oldest first.
     changes: Vec<Pair>,
 }
 
 impl Extrapolation {
-    /// Takes a turn from x to y.
+    /// Adds a turn from x to y.
     pub fn turn(&mut self, x: &[f64], y: &[f64]) -> Result<()> {
         let mut pair = if self.changes.len() < KEPT_CHANGES { Pair::default() } else { self.changes.remove(0) };
         // Elements without a surface do not change.
@@ -58,7 +62,7 @@ impl Extrapolation {
         Ok(())
     }
 
-    /// Extrapolates y to the limit of the turns.
+    /// Replaces y of the last turn by the next x.
     pub fn extrapolate(&self, y: &mut [f64]) {
         let count = self.changes.len();
         if count == 0 {
@@ -68,14 +72,14 @@ impl Extrapolation {
         let row = |i: usize| self.changes.iter().map(move |change| dot(&self.changes[i].r, &change.r));
         let gram: Vec<f64> = (0..count).flat_map(row).collect();
         let right = self.changes.iter().map(|change| dot(&change.r, &self.last.r)).collect();
-        let parts = least_squares(gram, right);
-        for (part, change) in parts.iter().zip(&self.changes) {
-            y.iter_mut().zip(&change.y).for_each(|(y, change)| *y -= part * change);
+        let g = least_squares(gram, right);
+        for (g_j, change) in g.iter().zip(&self.changes) {
+            y.iter_mut().zip(&change.y).for_each(|(y, dy)| *y -= g_j * dy);
         }
     }
 }
 
-/// The differences of values from the earlier ones, if there are any.
+/// Writes `values - before` to `to`, or `values` if `before` is empty.
 fn difference(to: &mut Vec<f64>, values: impl ExactSizeIterator<Item = f64>, before: &[f64]) -> Result<()> {
     to.clear();
     reserve(to, values.len(), "the turns before")?;
@@ -84,7 +88,8 @@ fn difference(to: &mut Vec<f64>, values: impl ExactSizeIterator<Item = f64>, bef
     Ok(())
 }
 
-/// g of the normal equations. Its components for dependent changes are near 0. Empty if the equations have no solution.
+/// Solves the normal equations `gram g = right`. The diagonal that is added keeps g small for linearly dependent changes. Empty if there is no finite
+/// solution.
 fn least_squares(mut gram: Vec<f64>, mut right: Vec<f64>) -> Vec<f64> {
     let n = right.len();
     let trace: f64 = gram.iter().step_by(n + 1).sum();
@@ -100,7 +105,7 @@ fn least_squares(mut gram: Vec<f64>, mut right: Vec<f64>) -> Vec<f64> {
         return Vec::new();
     }
     solve::solve_in_place(matrix.as_ref(), MatMut::from_column_major_slice_mut(&mut right, n, 1), Par::Seq, stack);
-    right.retain(|part| part.is_finite());
+    right.retain(|g_j| g_j.is_finite());
     if right.len() == n {
         right
     } else {

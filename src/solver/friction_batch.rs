@@ -1,4 +1,5 @@
-//! Many tangential problems of one scene: its pressures once, then a [table](super::friction_table) of motions or forces.
+//! Many tangential problems with the same pressures. The pressures are given or solved for once; then follows a
+//! [table](super::friction_table) with one tangential problem for each motion or force.
 
 use super::adhesive_friction::bounded;
 use super::friction_table::Table;
@@ -13,13 +14,13 @@ use crate::memory::collected;
 use crate::scene::{Friction, Scene};
 use crate::threads::Threads;
 
-/// Solves the tangential problem of a scene for each of the entries, with given pressures `[my][mx]`, or with those of the scene's normal
-/// problem, which is solved once. `found(i, ended, solution)` is called for each entry, on the thread that solved it and
-/// in no particular order, with a solution where there is one. Returns the outcome and the report of the normal problem.
+/// Solves the tangential problem of a scene for each of the entries. The pressures `[my][mx]` are given, or are those of the scene's normal problem,
+/// which is solved once. `found(i, ended, solution)` is called for each entry i, on the thread that solved it and in no particular order, with a
+/// solution where there is one. Returns the outcome and the report of the normal problem.
 ///
-/// A refused entry does not affect the others. For unlike bodies the pressures displace the surfaces sideways, but tractions do not change
-/// the pressures. `progress` is called on the calling thread: during the normal problem, and then after each entry, which counts as a cycle.
-/// When it cancels, unfinished entries end as `Outcome::Cancelled`.
+/// A refused entry does not affect the others. For unlike bodies the pressures displace the surfaces sideways, but here tractions do not change
+/// the pressures. `progress` is called on the calling thread: after the cycles of the normal problem, and then after each entry, which counts as a
+/// cycle. When `progress` cancels, unfinished entries end as `Outcome::Cancelled`.
 pub fn solve_friction_batch(
     scene: &Scene<'_>,
     pressure: Option<&[f64]>,
@@ -61,7 +62,7 @@ pub fn solve_friction_batch(
 }
 
 impl Solver {
-    /// [`solve_friction_batch`] with the coefficients of this solver and given pressures. The solver's last result is unchanged.
+    /// [`solve_friction_batch`] with the tangential coefficients of this solver and given pressures. The last result of the solver does not change.
     pub fn solve_friction_batch(
         &mut self,
         scene: &Scene<'_>,
@@ -71,8 +72,8 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
         found: impl Fn(usize, Ended, Option<&Solution>) + Sync + Send,
     ) -> Result<(Outcome, Report)> {
-        let own = self.own_tables.clone();
-        let scene = &*self.with_own_tables(scene, own.as_deref())?;
+        let own_tables = self.own_tables.clone();
+        let scene = &*self.with_own_tables(scene, own_tables.as_deref())?;
         self.check_tangential(scene, options)?;
         let (friction, pressure) = (friction_of_table(scene)?, &*positive(&scene.grid, pressure)?);
         let threads = self.problem.threads.clone();
@@ -84,7 +85,7 @@ impl Solver {
     }
 }
 
-/// The friction of a table, whose entries have no previous step.
+/// The friction of a scene. Refuses friction that continues a previous step, which the entries of a table do not have.
 fn friction_of_table<'s>(scene: &'s Scene<'_>) -> Result<&'s Friction<'s>> {
     match &scene.friction {
         None => invalid("friction is not given: there is nothing to solve".into()),
@@ -95,7 +96,7 @@ fn friction_of_table<'s>(scene: &'s Scene<'_>) -> Result<&'s Friction<'s>> {
     }
 }
 
-/// The report of given pressures.
+/// A report on given pressures, which no normal problem was solved for.
 fn of_pressures(grid: &Grid, pressure: &[f64], options: &Options) -> Report {
     Report { measures: measures(grid, pressure), tolerance: options.tolerance, ..Report::default() }
 }

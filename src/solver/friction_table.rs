@@ -1,9 +1,8 @@
-//! A table of tangential problems with the same pressures, one for each motion or force, spread over threads.
+//! A table of tangential problems with the same pressures, one for each motion or force, distributed over threads.
 //!
-//! Entries are solved in runs of [`RUN`] consecutive entries. The first of a run starts from rest, each other one from
-//! the tractions of the one before, unless that is [far](NEAR_CREEPAGE) away. An entry that ends without its
-//! certificate is solved again from rest. Runs do not depend on the thread: the results have the same bits for any
-//! number of threads.
+//! Entries are solved in runs of [`RUN`] consecutive entries. The first entry of a run starts from rest. Each further entry starts from the
+//! tractions of the entry before it, if that has converged and is [near](NEAR_CREEPAGE). An entry whose solve from these tractions does not converge
+//! is solved again from rest. Runs do not depend on the threads: the results have the same bits for any number of threads.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -19,21 +18,28 @@ use crate::scene::{Friction, Prescribed, Scene};
 use crate::sums::in_blocks;
 use crate::threads::Threads;
 
-/// Entries of a run.
+/// The number of entries of a run.
 pub const RUN: usize = 16;
-/// Difference of forces over mu N from which entries are far apart. Starts at a distance of .03 take 16 products in the mean, of .1 28, of .3 49,
-/// from rest 25 (circles and ellipses of 35 x 35 elements).
+/// Entries are near if their forces differ by at most this part of mu N. Mean numbers of products, on circles and ellipses of 35 x 35 elements:
+///
+/// | difference | .03 | .1 | .3 | start from rest |
+/// |---|---|---|---|---|
+/// | products | 16 | 28 | 49 | 25 |
 const NEAR_FORCE: f64 = 0.05;
-/// Relative difference of creepages, and of spin times the radius of the contact area, from which entries are far apart. Starts at a distance of .01
-/// take 10 products in the mean, of .1 14, of .4 18, from rest 16.
+/// Entries are near if their creepages, and spins times the radius of the contact area, differ by at most this part of those of the entry before.
+/// Mean numbers of products:
+///
+/// | difference | .01 | .1 | .4 | start from rest |
+/// |---|---|---|---|---|
+/// | products | 10 | 14 | 18 | 16 |
 const NEAR_CREEPAGE: f64 = 0.1;
 
 /// The motion or force of one entry of a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Entry {
-    /// In x and in y: the force if the scene's friction prescribes it, else the creepage.
+    /// In x and in y: the force where the scene's friction prescribes a force, else the creepage.
     pub amount: [f64; 2],
-    /// phi.
+    /// The spin phi.
     pub spin: f64,
 }
 
@@ -46,9 +52,9 @@ impl Entry {
         Entry { amount, spin: friction.spin }
     }
 
-    /// The friction of a table with the motion or force of this entry.
-    fn friction<'a>(&self, of: &Friction<'a>) -> Friction<'a> {
-        let mut friction = Friction { spin: self.spin, ..*of };
+    /// The friction of the scene, with the motion or force of this entry.
+    fn friction<'a>(&self, of_scene: &Friction<'a>) -> Friction<'a> {
+        let mut friction = Friction { spin: self.spin, ..*of_scene };
         for (prescribed, amount) in friction.prescribed.iter_mut().zip(self.amount) {
             *prescribed = match prescribed {
                 Prescribed::Creepage(_) => Prescribed::Creepage(amount),
@@ -59,30 +65,33 @@ impl Entry {
     }
 }
 
-/// The outcome and the report of an entry; `Outcome::Cancelled`: it was not solved.
+/// The outcome and the report of an entry. With `Outcome::Cancelled` the entry was not solved, or not to its end.
 pub type Ended = Result<(Outcome, friction::Report)>;
 
-/// The inputs of all workers, and their common progress.
+/// The inputs of a table, and the progress of all its workers.
 pub(super) struct Table<'a> {
     scene: &'a Scene<'a>,
     friction: &'a Friction<'a>,
     pressure: &'a [f64],
     entries: &'a [Entry],
     options: &'a Options,
-    /// Difference below which forces are near.
+    /// The largest difference of forces of near entries: [`NEAR_FORCE`] times mu N.
     near_force: f64,
-    /// The radius of a circle with the contact area.
+    /// The radius of a circle whose area is that of the contact.
     radius: f64,
     done: Done,
 }
 
-/// The progress so far.
+/// What the workers of a table have done so far.
 #[derive(Default)]
 struct Done {
-    /// Runs taken, besides the first one, which is the caller's.
+    /// Runs that workers have taken, besides the first run, which is the calling thread's.
     taken: AtomicUsize,
+    /// Solved entries.
     entries: AtomicUsize,
+    /// Products of solved entries.
     products: Mutex<f64>,
+    /// Whether the caller cancelled.
     cancelled: AtomicBool,
 }
 
@@ -94,7 +103,8 @@ impl<'a> Table<'a> {
         entries: &'a [Entry],
         options: &'a Options,
     ) -> Table<'a> {
-        // The yield limit is that of fresh particles, which suffices for a distance.
+        // The yield limit of a layer changes with its plastic slip. Here that of fresh material suffices: the sum of the bounds only serves as a
+        // scale.
         let layer =
             friction.layer.filter(|_| friction.has_ideal_layer()).map_or(f64::INFINITY, |layer| layer.yield_limit);
         let bounds = pressure.iter().enumerate().map(|(i, p)| (friction.coefficient.at(i) * p.max(0.0)).min(layer));
@@ -104,8 +114,8 @@ impl<'a> Table<'a> {
         Table { scene, friction, pressure, entries, options, near_force, radius, done: Done::default() }
     }
 
-    /// Solves all entries, unless `outcome` of the normal problem is CANCELLED. `crew`: workers of one thread; missing ones are made. Returns the
-    /// outcome and the seconds.
+    /// Solves all entries, unless the normal problem ended with `outcome` CANCELLED. `crew` holds workers of one thread each; missing ones are set
+    /// up. Returns `outcome`, or CANCELLED if the caller cancelled, and the seconds.
     pub(super) fn solve(
         self,
         outcome: Outcome,
@@ -117,11 +127,11 @@ impl<'a> Table<'a> {
         self.done.cancelled.store(outcome == Outcome::Cancelled, Ordering::Relaxed);
         let runs = self.entries.len().div_ceil(RUN);
         let workers = threads.count().min(runs).max(1);
-        // Set up before any entry is solved, so that lack of memory loses no entry.
+        // All workers are set up before any entry is solved: if memory is short, the call fails as a whole, not for some entries.
         let missing = (crew.len()..workers).map(|_| Tangent::new(self.scene, self.options, &Threads::One));
         let missing = collected(missing, "the workers of a table")?;
         crew.extend(missing.into_iter().collect::<Result<Vec<_>>>()?);
-        let mut told = |residual: f64| {
+        let mut tell = |residual: f64| {
             let Some(progress) = &mut progress else { return };
             let cycles = self.done.entries.load(Ordering::Relaxed) as u64;
             let work_units = *self.done.products.lock().unwrap_or_else(PoisonError::into_inner);
@@ -132,10 +142,10 @@ impl<'a> Table<'a> {
         };
         threads.for_each_beside(
             &mut crew[..workers],
-            // On a short table others could take all runs before the caller has one: then progress would not be called, and could not cancel.
+            // The calling thread always has run 0. On a short table the other threads could take all runs, and then `progress` would never be called.
             |tangent| {
-                self.run(0, tangent, &mut told, found);
-                self.work(tangent, &mut told, found);
+                self.run(0, tangent, &mut tell, found);
+                self.work(tangent, &mut tell, found);
             },
             |tangent| self.work(tangent, &mut |_| (), found),
         );
@@ -143,24 +153,24 @@ impl<'a> Table<'a> {
         Ok((outcome, began.elapsed().as_secs_f64()))
     }
 
-    /// Takes runs until there are none left; `told` gets the residual of each entry.
+    /// Solves runs until none is left. `tell` is called with the residual of each entry.
     fn work(
         &self,
         tangent: &mut Tangent,
-        told: &mut dyn FnMut(f64),
+        tell: &mut dyn FnMut(f64),
         found: &(impl Fn(usize, Ended, Option<&Solution>) + Sync + Send),
     ) {
         while self.done.taken.load(Ordering::Relaxed) < self.entries.len().div_ceil(RUN) {
-            self.run(1 + self.done.taken.fetch_add(1, Ordering::Relaxed), tangent, told, found);
+            self.run(1 + self.done.taken.fetch_add(1, Ordering::Relaxed), tangent, tell, found);
         }
     }
 
-    /// Solves the entries of a run; none beyond the table.
+    /// Solves the entries of run number `run`. A number beyond the table has no entries.
     fn run(
         &self,
         run: usize,
         tangent: &mut Tangent,
-        told: &mut dyn FnMut(f64),
+        tell: &mut dyn FnMut(f64),
         found: &(impl Fn(usize, Ended, Option<&Solution>) + Sync + Send),
     ) {
         let first = run.saturating_mul(RUN);
@@ -176,12 +186,12 @@ impl<'a> Table<'a> {
             found(i, ended, if has_solution { tangent.solution() } else { None });
             self.done.entries.fetch_add(1, Ordering::Relaxed);
             if !self.is_cancelled() {
-                told(residual);
+                tell(residual);
             }
         }
     }
 
-    /// Whether entry i is near the one before.
+    /// Whether entry i is near the entry before it (see [`NEAR_FORCE`] and [`NEAR_CREEPAGE`]).
     fn is_near(&self, i: usize) -> bool {
         let (now, before) = (&self.entries[i], &self.entries[i - 1]);
         let (mut force, mut motion, mut size) = (0.0, 0.0, 0.0);
@@ -204,13 +214,13 @@ impl<'a> Table<'a> {
         self.done.cancelled.load(Ordering::Relaxed)
     }
 
-    /// Solves entry i; `warm`: from the result of the one before.
+    /// Solves entry i, from the result of the entry before if `warm`, otherwise or if that fails from rest.
     fn entry(&self, i: usize, tangent: &mut Tangent, warm: bool) -> Ended {
         if self.is_cancelled() {
             return Ok((Outcome::Cancelled, friction::Report::default()));
         }
         let friction = self.entries[i].friction(self.friction);
-        // The tables are the scene's, which are checked.
+        // Tangential tables are those of the scene and were checked with it.
         Friction { influence: None, ..friction }.check(&self.scene.grid)?;
         let turn = Turn { scene: self.scene, friction: &friction, options: self.options, threads: &Threads::One };
         let mut watch = |_: &Progress| self.is_cancelled();
@@ -228,6 +238,7 @@ impl<'a> Table<'a> {
         Ok((outcome, report))
     }
 
+    /// Solves one tangential problem, from the last result if `again`.
     fn step(&self, tangent: &mut Tangent, turn: &Turn<'_>, again: bool, watch: ProgressCallback<'_>) -> Ended {
         tangent.solve(turn, self.pressure, again, &mut Monitor::new(Some(watch), Vec::new(), false))
     }

@@ -1,4 +1,4 @@
-//! The results of a handle, and the exchange of its own coefficients.
+//! What a handle (a [`Solver`]) tells about its last result and its set-up, and the replacement of the caller's influence coefficients.
 
 use std::sync::Arc;
 
@@ -32,17 +32,17 @@ impl Solver {
         self.state.has_limited() || self.split.is_some()
     }
 
-    /// Whether there is a result: that of the last solve, unless it failed.
+    /// Whether the solver holds a result.
     pub fn has_solved(&self) -> bool {
         self.has_result
     }
 
-    /// The memory of relaxing bodies, as numbers; none before the first step.
+    /// The history of visco-elastic bodies as a list of numbers. None before the first step.
     pub(crate) fn history(&self) -> Option<Vec<f64>> {
         self.beside.histories[effects::place(Visco::NAME)?].numbers()
     }
 
-    /// Takes the memory of another solver's bodies.
+    /// Sets the history of visco-elastic bodies to the `numbers` of another solver's [history](Self::history).
     pub(crate) fn take_history(&mut self, numbers: &[f64]) -> Result<()> {
         match effects::place(Visco::NAME) {
             Some(k) => self.beside.histories[k].take(numbers, &self.problem.grid),
@@ -50,7 +50,7 @@ impl Solver {
         }
     }
 
-    /// The course of the last solve: one row per grid, coarsest first.
+    /// The ledger of the last solve: one row for each grid, coarsest first.
     pub fn ledger(&self) -> &[LedgerRow] {
         &self.ledger
     }
@@ -60,8 +60,8 @@ impl Solver {
         &self.problem.coefficients
     }
 
-    /// Sets the table of all later solves, in place of the one at set-up; memory and plans of the operator are kept. The last result stays. After an
-    /// error the solver has no table until another one is set.
+    /// Replaces the caller's table of influence coefficients for all later solves. Memory and FFT plans of the operator are reused. The last result
+    /// does not change. If an operator cannot be set up with the table, the solver has none until another table is set.
     pub fn set_influence(&mut self, table: Table) -> Result<()> {
         if self.set_up.own_coefficients.is_none_or(|(_, layout)| layout != Layout::Offsets) {
             return invalid("influence is given, but this solver was set up without".into());
@@ -69,7 +69,7 @@ impl Solver {
         Effect::check(&table, &self.problem.grid)?;
         let coefficients = self.problem.coefficients.clone().with_kernel(Arc::new(table.clone()));
         self.set_up.largest_influence = coefficients.largest(&self.problem.grid);
-        // All that depends on the last table is dropped first, so that the operator is not shared.
+        // All other owners of the operator are dropped first, so that its memory can be reused.
         self.set_up.lacks_table = true;
         self.methods.forget_operator();
         self.adhesion = None;
@@ -82,7 +82,7 @@ impl Solver {
         Ok(())
     }
 
-    /// The number of threads at set-up; 0: all cores.
+    /// The number of threads requested at set-up; 0 means all cores.
     pub fn threads(&self) -> usize {
         self.set_up.options.threads
     }
@@ -92,12 +92,13 @@ impl Solver {
         &self.set_up.options
     }
 
-    /// The caller's coefficients, if any, in the layout of a scene of this grid, with the name of the effect.
+    /// The caller's influence coefficients and the name of their effect, if there are any. The layout is that of a scene on this grid: all offsets
+    /// `-mx..mx` in x, and in y either all offsets (a table) or all pairs of rows (row tables).
     pub(crate) fn own_tables(&self) -> Option<(&'static str, Vec<f64>)> {
         let kernel = self.influence().kernel();
         let (mx, my) = (self.grid().mx as i64, self.grid().my as i64);
         let of_row = move |jy: i64, iy: i64| {
-            // Column -mx is never read.
+            // No pair of elements has the offset -mx; the layout has a column for it.
             (-mx..mx).map(move |kx| if kx == -mx { 0.0 } else { kernel.between((0, jy), (kx, iy)) })
         };
         let (name, layout) = self.set_up.own_coefficients?;
@@ -110,9 +111,9 @@ impl Solver {
 
     /// Bytes of operators, workspace and results.
     pub fn bytes(&self) -> usize {
-        // Workers share the coefficients of the finest grid.
-        let own = |worker: &Solver| worker.bytes() - worker.influence().bytes();
-        let workers: usize = self.workers.iter().flatten().map(own).sum();
+        // The coefficients of the finest grid are shared with the workers and count once.
+        let unshared = |worker: &Solver| worker.bytes() - worker.influence().bytes();
+        let workers: usize = self.workers.iter().flatten().map(unshared).sum();
         let limits = (self.limits.len() + self.remembered.len()) * size_of::<f64>();
         let friction = self.friction.as_deref().into_iter().chain(&self.crew).map(Tangent::bytes).sum::<usize>();
         let tables = self.own_tables.as_ref().map_or(0, |tables| tables.bytes());

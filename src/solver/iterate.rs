@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! repeat
-//!    2., 3.  p = 0 in E; a step of the method on C
+//!    2., 3.  p = 0 in the exterior area E; a step of the method on C
 //!    (4.1)   elements with p < 0 leave C, those above their limit go to it; then u = A p
 //!    certify if the criterion seems met: u = A p by a fresh product in double precision
 //!    (4.2)   elements that penetrate enter C, and so do elements at their limit with e > 0
@@ -10,7 +10,8 @@
 //! until max_cycles, a callback that cancels, or no progress: then the best iterate is the result
 //! ```
 //!
-//! The product comes after (4.1) and before (4.2). With the product before (4.1) the loop would cycle.
+//! Numbers of steps are those of the paper. The product comes after (4.1) and before (4.2): with a product before (4.1), u would belong to pressures
+//! that (4.1) then changes, and the loop would cycle between contact areas.
 
 use super::best::Best;
 use crate::contact::{admit, all_stay, truncate, AdmissibleSet, Freshness, Survey};
@@ -18,7 +19,7 @@ use crate::error::{Error, Result};
 use crate::methods::{Change, Step, Task};
 use crate::progress::Outcome;
 
-/// Runs one method from the state. Unless it converges, `best` holds the best iterate.
+/// Iterates with one method from the state until an outcome is reached. Unless this is Converged, `best` then holds the best iterate.
 pub fn iterate<S: AdmissibleSet>(
     method: &mut dyn Step<S>,
     task: &mut Task<'_, '_, S>,
@@ -26,8 +27,9 @@ pub fn iterate<S: AdmissibleSet>(
 ) -> Result<Outcome> {
     let (policy, set, goal) = (method.policy(), task.set, task.goal);
     method.begin(task.state)?;
+    // `chatter`: steps in which the certificate held but C changed. `since`: steps since the violation was last notably below `least`.
     let (mut chatter, mut least, mut since) = (0, f64::INFINITY, 0);
-    // Not every step counts as a cycle. So the number of steps is limited as well.
+    // Some steps count no cycle. Therefore the number of steps is limited as well.
     for _ in 0..=goal.max_cycles {
         if task.is_interrupted() {
             break;
@@ -37,7 +39,7 @@ pub fn iterate<S: AdmissibleSet>(
         let change = method.step(task).or_else(|error| given_up(error, method.name(), task));
         task.count_products();
         let change = change?;
-        // Only a fresh product certifies: without one, u may be a linear combination of earlier displacements.
+        // A fresh product of this step. An exact u may also be a linear combination of earlier displacements, which certifies nothing.
         let is_certain = task.state.u_is == Freshness::Exact && task.monitor.count.matrix_products > products;
         if change.gives_up && !is_certain {
             return Ok(Outcome::Stagnated);
@@ -58,8 +60,7 @@ pub fn iterate<S: AdmissibleSet>(
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
         if task.state.u_is == Freshness::Exact && goal.holds(&survey, change.update, set) && task.carries() {
             chatter += u32::from(changes > 0);
-            // Where the bodies fit up to round-off, round-off makes elements enter C. So after some steps the
-            // certificate alone decides, even if C still changes.
+            // If the bodies fit up to round-off, elements may change sides without end. Then, and after some steps, the certificate alone decides.
             let fits = survey.residual == 0.0 && survey.violation == 0.0 && all_stay(task.state, set);
             if changes == 0 || fits || policy.exchanged_by_loop && chatter > policy.chatter {
                 task.monitor.survey = Some(last);
@@ -80,8 +81,8 @@ pub fn iterate<S: AdmissibleSet>(
     Ok(task.monitor.interrupted())
 }
 
-/// The outcome of a step that failed. The operator of elastic bodies is positive definite. If a step finds that it is not, round-off is the
-/// cause, and the method gives up. The caller's own coefficients may truly not be positive definite: they are refused with the error.
+/// The change of a step that failed with `error`. The operator of elastic bodies is positive definite. If a step finds that it is not, round-off is
+/// the cause, and the method gives up. The caller's coefficients may truly not be positive definite: then the solve fails with the error.
 fn given_up<S: AdmissibleSet>(error: Error, method: &str, task: &mut Task<'_, '_, S>) -> Result<Change> {
     match error {
         Error::NotPositiveDefinite(message) if !task.problem.given => {
@@ -93,7 +94,8 @@ fn given_up<S: AdmissibleSet>(error: Error, method: &str, task: &mut Task<'_, '_
     }
 }
 
-/// Surveys the state, by a fresh product if u is stale or the criterion seems met: only a fresh product certifies.
+/// Returns the survey of the state after `left` elements have left C. u is recomputed by a product if C has changed or u is stale, and also if the
+/// criterion seems met or the solve ends here and u is only near A p.
 fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: usize) -> Result<Survey> {
     if left > 0 || task.state.u_is == Freshness::Stale {
         task.problem.refresh(task.state, task.set)?;
@@ -111,7 +113,7 @@ fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: 
     Ok(survey)
 }
 
-/// (4.2). Returns the number of elements that enter C, and the survey of the new C.
+/// Step (4.2). Returns the number of elements that enter C, and the survey with the new C.
 fn let_enter<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, survey: Survey) -> (usize, Survey) {
     let penetrates = !S::FIXED && survey.violation > 0.0;
     match if penetrates { admit(task.state, task.set) } else { 0 } {

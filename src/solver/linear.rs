@@ -1,4 +1,4 @@
-//! Products with the caller's pressures, and the stiffness of a result.
+//! Linear problems of a solver: products A p with the caller's pressures, and the stiffness of a result.
 
 use super::tangential_calls::finite;
 use super::{ActiveSet, Asked, Guess, InitialGuess, Method, Options, Outcome, Solver};
@@ -14,17 +14,18 @@ const TOLERANCE: f64 = 1e-10;
 /// Relative residual that suffices if round-off prevents [`TOLERANCE`].
 const SUFFICIENT_RESIDUAL: f64 = 1e-6;
 
-/// dF/d approach of a result.
+/// The stiffness of a result: dF/d approach, at fixed contact area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stiffness {
-    /// A force per length.
+    /// The stiffness, a force per length.
     pub value: f64,
-    /// Relative residual of its equations, 2-norms over the contact area. The relative error of the value is about this.
+    /// Relative residual of the equations `A s = 1`, in 2-norms over the contact area. The relative error of `value` is about as large.
     pub residual: f64,
 }
 
 impl Solver {
-    /// `displacement = A pressure`, both `[my][mx]`: pressures of any sign, with all effects of the set-up that A has. The last result stays.
+    /// Computes `displacement = A pressure`, both `[my][mx]`, for pressures of any sign. A contains the effects of the set-up that change influence
+    /// coefficients. The last result does not change.
     pub fn product(&mut self, pressure: &[f64], displacement: &mut [f64]) -> Result<()> {
         self.set_up.check_table()?;
         let grid = self.problem.grid;
@@ -35,7 +36,7 @@ impl Solver {
         }
         finite(&grid, pressure)?;
         self.problem.displace(pressure, displacement)?;
-        // This is not a product of a solve.
+        // The product must not count as one of the next solve.
         self.problem.take_products();
         if let Some(compressible) = self.set_up.compressible.as_ref().filter(|of| of.is_without == Some(true)) {
             let by = compressible.by(in_blocks(pressure.iter().copied()));
@@ -44,14 +45,15 @@ impl Solver {
         Ok(())
     }
 
-    /// dF/d approach of the last result. The contact area, the pressures at their limit and the tractions are held fixed, within one step in time of
-    /// bodies that relax. `A s = 1` is solved on the contact area, and the value is the sum of `s dx dy`. It is 0 without contact. The outcome says
-    /// why a value could not be computed. The last result stays valid. The first call sets up another solver of one thread and keeps it.
+    /// Computes dF/d approach of the last result: the sum of `s dx dy`, where `A s = 1` on the contact area. The contact area, the pressures at
+    /// their limit and the tractions are held fixed, and so is the length of a time step of bodies that relax. The stiffness is 0 without contact.
+    /// The outcome tells why a value could not be computed. The last result does not change. The first call sets up another solver of one thread,
+    /// which is kept.
     pub fn stiffness(&mut self) -> Result<(Outcome, Stiffness)> {
         self.watched_stiffness(None)
     }
 
-    /// [`stiffness`](Solver::stiffness), with a callback that may cancel it.
+    /// [`stiffness`](Solver::stiffness) with a progress callback, which may cancel.
     pub(super) fn watched_stiffness(&mut self, progress: Option<ProgressCallback<'_>>) -> Result<(Outcome, Stiffness)> {
         if !self.has_result {
             return invalid("solver has no result: there was no solve, or the last one found none".into());
@@ -87,16 +89,17 @@ impl Solver {
         Ok((outcome, Stiffness { value: found.value / self.compliance, ..found }))
     }
 
-    /// The stiffness of a contact area. This solver's own result is lost.
+    /// Computes the stiffness of the contact area `contact`. The result of this solver is overwritten.
     fn stiffness_of(
         &mut self,
         contact: &[bool],
         options: &Options,
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Stiffness)> {
-        let (grid, own) = (self.problem.grid, self.problem.self_influence());
-        // Pressures of order 1 in any units; a power of two loses no digit.
-        let unit = if own > 0.0 { own.log2().floor().exp2() } else { 1.0 };
+        let (grid, self_influence) = (self.problem.grid, self.problem.self_influence());
+        // The right-hand side is not 1 but a power of two near the self-influence, so that pressures are of order 1 in any units. Dividing by a power
+        // of two is exact.
+        let unit = if self_influence > 0.0 { self_influence.log2().floor().exp2() } else { 1.0 };
         let load = Load::Approach(unit);
         self.suit(load)?;
         if self.problem.coefficients.is_mean_free() && !contact.contains(&false) {
@@ -106,7 +109,7 @@ impl Solver {
         let h: Vec<f64> = zeros(grid.len(), "distances of a stiffness")?;
         let p: Vec<f64> = zeros(grid.len(), "pressures of a stiffness")?;
         let guess = Some(Guess { pressure: &p, contact });
-        // Only grid, distance and load are used: the coefficients contain effects and bodies.
+        // Of this scene only grid, distance and load are read: the coefficients already contain the bodies and the effects.
         let scene = &Scene::new(grid, &h, Bodies::same(1.0, 0.0), load);
         let mut monitor = Monitor::new(progress, Vec::new(), false);
         let (outcome, _) = self.solve_normal(Asked { guess, ..Asked::new((scene, 0.0), options) }, &mut monitor)?;

@@ -1,4 +1,5 @@
-//! The methods of a solver, each followed by the next of the list ([`stages`](super::stages)) when it stalls, and their starts without a guess.
+//! The methods of a solver. A list gives their order ([`stages`](super::stages)): when one makes no progress, or has used its share of cycles, the
+//! next one continues. Also their starts without a guess.
 
 use super::best::Best;
 use super::estimates;
@@ -18,24 +19,28 @@ use crate::methods::{Start, Step, Task};
 use crate::progress::{Outcome, UPDATE_RESIDUAL};
 use crate::scene::Load;
 
-/// Violation of a guess above which a start from the coarser grids is better.
+/// Relative violation of a guess above which a start from the coarser grids is better.
 const LARGEST_USEFUL: f64 = 0.3;
-/// Displacements below this part of the approach are round-off of the distances. No step improves a bearing area then: it is the solution if
-/// its certificate holds.
+/// Displacements below this part of the approach are round-off of `h - approach`. No step of a method improves such a start, so it is accepted as the
+/// solution if its certificate holds.
 const HIDDEN_DISPLACEMENT: f64 = 8.0 * f64::EPSILON;
 
-/// The methods of a solver, set up at first use and kept.
+/// The methods of a solver, with their memory, which is kept from solve to solve.
 pub struct Methods {
     pub projected_cg: ProjectedCg,
+    /// The direct solve, for coefficients that have one.
     direct: Option<Direct>,
+    /// The grids of the multigrid methods, set up at their first use.
     multigrid: Option<FullMultigrid>,
     projected_newton: ProjectedNewton,
     norm: Norm,
+    /// The best iterate of all methods of a solve.
     pub best: Best,
+    /// Smoother and sweeps of the V-cycle.
     shape: CycleShape,
 }
 
-/// The judgement of a start.
+/// What a solve does with its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Beginning {
     /// The start satisfies the goal.
@@ -47,7 +52,7 @@ enum Beginning {
 }
 
 impl Methods {
-    /// Sets up only the methods that every solve needs.
+    /// Creates all methods except multigrid, which is set up at its first use.
     pub fn new(problem: &Problem, options: &Options) -> Result<Methods> {
         Ok(Methods {
             projected_cg: ProjectedCg::new(problem, options.precision),
@@ -60,7 +65,8 @@ impl Methods {
         })
     }
 
-    /// Solves from the state, a start of the kind `from`, and its survey. An `error_ratio` of the options may raise the tolerance of the goal.
+    /// Solves by the methods `stages`. The state is the start: `from` tells where it comes from, and `survey` is its survey unless it is p = 0. With
+    /// a positive `error_ratio` the tolerance of the goal may increase (see [`Options::error_ratio`]).
     pub fn solve<S: AdmissibleSet>(
         &mut self,
         task: &mut Task<'_, '_, S>,
@@ -112,7 +118,7 @@ impl Methods {
         }
     }
 
-    /// Ends a solve without convergence with the best iterate, whose fresh product may satisfy the goal.
+    /// Ends a solve without convergence: restores the best iterate by a fresh product. If that satisfies the goal, the outcome is Converged.
     fn end_with_best<S: AdmissibleSet>(&mut self, outcome: Outcome, task: &mut Task<'_, '_, S>) -> Result<Outcome> {
         let indefinite =
             outcome == Outcome::Stagnated && task.problem.given && has_negative_energy(task.problem, task.state)?;
@@ -126,7 +132,7 @@ impl Methods {
         Ok(if is_met { Outcome::Converged } else { outcome })
     }
 
-    /// Judges the start.
+    /// Judges the start by its survey, and prepares it for the first method.
     fn take_over<S: AdmissibleSet>(
         &mut self,
         stage: Stage,
@@ -144,9 +150,9 @@ impl Methods {
             admit(state, set);
             return Ok(Beginning::FromNothing);
         }
-        // With limits pressures do not scale with the load.
+        // With limits pressures do not scale with the load, so they are not extrapolated from the last solutions.
         if on_coarser_grids && from == Start::Previous && !S::LIMITED {
-            // The prediction includes the contact area.
+            // This sets the contact area as well.
             self.projected_cg.predict(state, &task.problem.threads)?;
         } else if survey.violation > 0.0 {
             admit(state, set);
@@ -154,8 +160,8 @@ impl Methods {
         Ok(Beginning::GoOn)
     }
 
-    /// Prepares the next method, which starts from the best iterate. NORM starts from p = 0 if that iterate is useless. PROJECTED_CG follows a direct
-    /// solve and starts from its state.
+    /// Prepares the state for `stage`, which is not the first method. It starts from the best iterate. Exceptions: NORM starts from p = 0 if the best
+    /// iterate has a violation above [`LARGEST_USEFUL`]; PROJECTED_CG only follows a direct solve and starts from its last state.
     fn hand_over<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<()> {
         if stage != Stage::ProjectedCg {
             log::info!("no further progress on this scene: {stage:?} takes over");
@@ -169,7 +175,8 @@ impl Methods {
         Ok(())
     }
 
-    /// A start without a guess, which may be the solution. An `error_ratio` may raise the tolerance of the goal.
+    /// Makes a start without a guess for `stage`. For most methods this start has a discretisation error that can be estimated, so a positive
+    /// `error_ratio` may increase the tolerance of the goal. Returns Solved if the start is the solution.
     fn start<S: AdmissibleSet>(
         &mut self,
         stage: Stage,
@@ -185,7 +192,7 @@ impl Methods {
         let (self_influence, threads) = (task.problem.self_influence(), &task.problem.threads);
         match stage {
             Stage::Direct | Stage::ProjectedCg if !S::FIXED => {
-                // A useless guess is dropped.
+                // The state holds a guess that was judged useless.
                 if from != Start::Nothing {
                     task.state.unload();
                 }
@@ -201,7 +208,7 @@ impl Methods {
                     None => self.projected_cg.start(task)?,
                 }
             }
-            // By force, NORM finds no way from p = 0 to the elements that end at their limit.
+            // With a prescribed force and limits, NORM from p = 0 does not find the elements that end at their limit.
             Stage::Norm if S::LIMITED && !S::FIXED && matches!(task.state.load, Load::Force(_)) => {
                 task.state.unload();
                 if task.state.start_on_bearing_area(task.set, (self_influence, f64::INFINITY), threads).is_none() {
@@ -218,23 +225,23 @@ impl Methods {
                 task.state.start(self_influence);
             }
         }
-        // The other methods start from p = 0, which gives no information about the error.
+        // The other methods start from p = 0, from which no error can be estimated.
         let is_near = matches!(stage, Stage::Direct | Stage::ProjectedCg | Stage::FullMultigrid);
         if error_ratio > 0.0 && is_near && !S::FIXED {
             let predicted = estimates::predict(task.problem, task.state);
-            // A solution with a larger residual is useless, however coarse the grid.
+            // A solution with a larger residual than UPDATE_RESIDUAL is useless, however coarse the grid.
             let enough = (error_ratio * predicted).min(UPDATE_RESIDUAL);
             task.goal.tolerance = task.goal.tolerance.max(enough);
         }
         Ok(Beginning::GoOn)
     }
 
-    /// Releases the operator, which gets other coefficients. Call [`renew`](Self::renew) before the next solve.
+    /// Drops all references to the operator, before it gets other coefficients. Call [`renew`](Self::renew) before the next solve.
     pub fn forget_operator(&mut self) {
         self.multigrid = None;
     }
 
-    /// Takes the problem's other coefficients.
+    /// Sets up the methods for the new coefficients of `problem`.
     pub fn renew(&mut self, problem: &Problem) -> Result<()> {
         self.projected_cg.renew(problem);
         self.direct = Direct::new(&problem.coefficients, &problem.grid)?;
@@ -255,7 +262,7 @@ impl Methods {
     }
 }
 
-/// Whether a surveyed state satisfies the goal before any step. If so, the monitor gets the survey.
+/// Whether the state, with this survey, satisfies the goal. If so, the monitor gets the survey.
 fn is_solved<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, survey: Survey) -> bool {
     let holds = task.goal.holds(&survey, 0.0, task.set) && task.carries();
     if holds {
@@ -264,13 +271,14 @@ fn is_solved<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, survey: Survey) -> bo
     holds
 }
 
-/// Whether `p'Ap < 0`: when an iteration diverges by an indefinite A, p is dominated by such a direction.
+/// Whether `p'Ap < 0`, by a fresh product. If an iteration diverges because A is indefinite, such a direction dominates p.
 fn has_negative_energy(problem: &mut Problem, state: &mut State) -> Result<bool> {
     problem.displace(&state.p, &mut state.u)?;
     state.u_is = Freshness::Exact;
     Ok(state.p.iter().zip(&state.u).map(|(p, u)| p * u).sum::<f64>() < 0.0)
 }
 
+/// Returns the multigrid, which is set up at the first call.
 fn set_up_multigrid<'a>(
     multigrid: &'a mut Option<FullMultigrid>,
     problem: &mut Problem,

@@ -1,8 +1,8 @@
-//! The solve of a scene: the options, the loop (`iterate`), the methods and their order, the report.
+//! The solve of a scene: the options, the loop of all methods (`iterate`), the order of the methods, and the report.
 //!
-//! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of undeformed distances and
-//! loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call. The functions of a solver stand in the files of
-//! this folder, one subject in each.
+//! A [`Solver`] is set up once for a grid and a pair of bodies: it holds operators, transforms and coarser grids. Then it solves scenes with any
+//! undeformed distances and loads, one by one or as a [batch](Solver::solve_batch). [`solve`] sets up and solves in one call. The methods of
+//! [`Solver`] are in the files of this folder, one subject in each.
 
 mod adhesion;
 mod adhesive_friction;
@@ -83,16 +83,19 @@ use methods::Methods;
 pub(crate) use tangential::StepBefore;
 use tangential::Tangent;
 
-/// Operators and grids for many solves on one grid and one pair of bodies. Only one thread at a time may use a solver.
+/// Solves scenes on one grid and with one pair of bodies; holds their operators and coarser grids. Only one thread at a time may use a solver.
 ///
-/// A solver holds the last complete result, or none. After a solve that was rejected before it began, or for its friction, it holds the
-/// previous result. After any other failed solve it holds none.
+/// A solver holds the last complete result, or none. A solve that is refused before it begins leaves the previous result, and so does a failed solve
+/// of a scene with friction, adhesion or another coupled effect. After any other failed solve the solver holds none.
 ///
-/// The bits of a solve that starts from nothing or from a given guess do not depend on earlier solves. With one thread, repeated solves by the same
-/// method and from the same kind of start allocate no memory, with three exceptions. PROJECTED_CG (and AUTO) work on a window around the contact
-/// area, whose operator is set up anew when its size changes. From 128 x 128 elements on, products with pressures on a part of the grid have an
-/// operator of a shorter period, which is set up anew when the extent of the pressures changes. From 2^23 elements (2896 x 2896) on, the operators of
-/// the start of a solve are set up for each solve.
+/// The bits of a solve that starts from p = 0 or from a given guess do not depend on earlier solves.
+///
+/// With one thread, repeated solves by the same method and from the same kind of start allocate no memory, with three exceptions:
+///
+/// - PROJECTED_CG and AUTO iterate on a window around the contact area. The operator of the window is set up again when its size changes.
+/// - From 128 x 128 elements on, products with pressures on a part of the grid use an operator of a shorter period. This operator is set up again
+///   when the extent of the pressures changes.
+/// - From 2^23 elements (2896 x 2896) on, the operators for the start of a solve are set up in each solve.
 pub struct Solver {
     problem: contact::Problem,
     set_up: SetUp,
@@ -100,46 +103,47 @@ pub struct Solver {
     state: State,
     /// Whether `state` is a complete result.
     has_result: bool,
-    /// One limit per element of the scene being solved; empty if there is none.
+    /// The pressure limits of the scene that is solved, if they are given per element.
     limits: Vec<f64>,
     ledger: Vec<LedgerRow>,
-    /// The further problems of a scene, kept from step to step.
+    /// What coupled problems keep from step to step, except friction.
     beside: Beside,
     /// The tangential problem of scenes with friction.
     friction: Option<Box<Tangent>>,
-    /// A step of another solver, before the first one of this.
+    /// A step of another solver, from which the first step of this solver may continue.
     step_before: Option<StepBefore>,
     /// The solver of scenes with adhesion.
     adhesion: Option<Box<crate::adhesion::Solver>>,
     /// The split of the total pressures of the last result, if its scene had adhesion.
     split: Option<crate::adhesion::Split>,
-    /// The memory of visco-elastic bodies, and the distances of their step; empty without memory.
+    /// Two fields for visco-elastic bodies: the displacements by earlier steps, and the distances of the step. Empty for other bodies.
     remembered: Vec<f64>,
-    /// The compliance of the bodies in the last result, relative to that at set-up: 1 without memory.
+    /// The compliance of the bodies in the step of the last result, relative to that at set-up: 1 for bodies without memory.
     compliance: f64,
     /// The caller's tangential coefficients.
     own_tables: Option<Arc<KeptInfluence>>,
-    /// Tangential problems of one thread each, for tables: set up when first needed.
+    /// Tangential problems of one thread each, for tables of entries. They are set up at the first table.
     crew: Vec<Tangent>,
-    /// Solvers of one thread each, for batches: set up when first needed.
+    /// Solvers of one thread each, for batches and stiffnesses. They are set up at the first use.
     workers: Vec<Option<Solver>>,
+    /// Seconds of the set-up, until a report has them.
     setup_seconds: f64,
 }
 
-/// The set-up of a solver.
+/// What a solver was set up with: later scenes and options are checked against it.
 #[derive(Clone)]
 struct SetUp {
-    /// The values that later scenes may not change.
+    /// The bodies and the values of effects that later scenes may not change.
     named: Named,
-    /// The effect with the caller's coefficients, and their layout.
+    /// The name of the effect by which the caller gives influence coefficients, and their layout. None without such an effect.
     own_coefficients: Option<(&'static str, Layout)>,
-    /// Whether the last table could not be set, so that there is none.
+    /// Whether the last attempt to replace the caller's table failed, so that the solver has no coefficients.
     lacks_table: bool,
-    /// The effect, if any, for which the multigrid methods have no smoother or no coarser grids.
+    /// The name of the effect, if any, for which the multigrid methods have no smoother or no coarser grids.
     without_multigrid: Option<&'static str>,
-    /// The largest absolute coefficient.
+    /// The largest absolute influence coefficient.
     largest_influence: f64,
-    /// The coefficients with a constant, if they have one: see [`Compressible`].
+    /// The coefficients with their constant, if they contain one: see [`Compressible`].
     compressible: Option<Compressible>,
     /// Smoother, sweeps, precision, and the requested threads.
     options: Options,
@@ -153,19 +157,22 @@ pub fn solve(scene: &Scene<'_>, options: &Options) -> Result<(Solver, Outcome, R
 }
 
 impl Solver {
-    /// Sets up operators and grids from the grid, the bodies and the effects of `scene`. Its undeformed distance may be empty.
+    /// Sets up operators and grids from the grid, the bodies and the effects of `scene`. The undeformed distance may be empty; then it and the load
+    /// are not checked.
     pub fn new(scene: &Scene<'_>, options: &Options) -> Result<Solver> {
         Ok(Solver::set_up(scene, options, !scene.undeformed_distance.is_empty())?.0)
     }
 
-    /// [`Solver::new`] after a check of the whole scene. Returns the least undeformed distance as well.
+    /// Checks the whole scene and sets up a solver for it. Returns the least undeformed distance as well.
     pub(crate) fn for_scene(scene: &Scene<'_>, options: &Options) -> Result<(Solver, f64)> {
         Solver::set_up(scene, options, true)
     }
 
+    /// Sets up a solver. With `has_surface` the undeformed distance and the load are checked as well, and the least distance is returned; without it
+    /// the second value is infinite.
     fn set_up(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<(Solver, f64)> {
         let began = Instant::now();
-        // The scene is refused first, then invalid options and unavailable threads.
+        // Errors of the options and of the threads are returned only if the scene has none.
         let threads = options.check().and_then(|()| Ok(Threads::new(options.threads)?));
         let lowest = if !has_surface {
             scene.check_effects_and_bodies()?;
@@ -194,6 +201,7 @@ impl Solver {
         Ok((solver, lowest))
     }
 
+    /// A solver without a result.
     fn of(grid: Grid, coefficients: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
         let mut problem = contact::Problem::new(grid, coefficients, threads)?;
         problem.given = set_up.own_coefficients.is_some();
@@ -219,7 +227,8 @@ impl Solver {
         })
     }
 
-    /// Solves for the undeformed distance and the load of `scene`, whose other members must be those of the set-up.
+    /// Solves a scene. Its undeformed distance and load may differ from those at set-up; its grid, bodies and effects must be the same, except for
+    /// values that an effect allows to change.
     pub fn solve(
         &mut self,
         scene: &Scene<'_>,
@@ -227,13 +236,13 @@ impl Solver {
         guess: Option<Guess<'_>>,
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
-        let own = self.own_tables.clone();
-        let scene = &*self.with_own_tables(scene, own.as_deref())?;
+        let own_tables = self.own_tables.clone();
+        let scene = &*self.with_own_tables(scene, own_tables.as_deref())?;
         let lowest = scene.check_distance_and_load(&self.problem.threads)?;
         self.solve_checked(Asked { guess, ..Asked::new((scene, lowest), options) }, progress)
     }
 
-    /// [`Solver::solve`] for a scene whose distance and load are checked.
+    /// [`Solver::solve`] for a scene whose distance and load are checked already.
     pub(crate) fn solve_checked(
         &mut self,
         asked: Asked<'_>,
@@ -251,7 +260,8 @@ impl Solver {
         }
     }
 
-    /// Solves a checked scene of bodies that do not attract each other. They have no memory, or the distances contain it.
+    /// Solves a checked scene without adhesion: the normal problem, then the problems coupled with it, then the error estimates. Bodies with memory
+    /// of earlier steps have that memory in the undeformed distance here.
     fn solve_at_once(&mut self, asked: Asked<'_>, progress: Option<ProgressCallback<'_>>) -> Result<(Outcome, Report)> {
         let Asked { scene, options, .. } = asked;
         check::guess(asked)?;

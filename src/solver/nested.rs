@@ -1,4 +1,5 @@
-//! The FMG scheme (section 4.3 of the paper): nested iteration over the grids, coarsest first, each by the loop.
+//! The full multigrid scheme FMG (section 4.3 of the paper): nested iteration over the grids, coarsest first. Each grid is solved by the loop
+//! (`iterate`), from the interpolated solution of the next coarser one.
 
 use super::best::Best;
 use super::iterate::iterate;
@@ -11,35 +12,36 @@ use crate::progress::{Goal, Monitor, Outcome};
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// Most cycles on the coarser grids, which only prepare the next finer one. Most iterations of NORM on the coarsest grid, unless the solve allows
-/// more.
+/// Most cycles on each coarser grid, as its solution only serves as a start of the next finer one.
 const COARSE_CYCLES: u64 = 30;
+/// Iterations of NORM allowed on the coarsest grid, or `max_cycles` if that is more.
 const COARSEST_ITERATIONS: u64 = 1000;
 
-/// The grids of multigrid, and the unknowns of the coarser ones.
+/// The grids of the multigrid methods, and problem and unknowns of the coarser ones.
 pub struct FullMultigrid {
     multigrid: Multigrid,
     workspace: Workspace,
-    /// The coarser grids, finest first.
+    /// Problem and unknowns of each coarser grid, finest first.
     coarser: Vec<(Problem, State)>,
+    /// The best iterate on a coarser grid.
     best: Best,
 }
 
 impl FullMultigrid {
-    /// The grids below that of `problem`.
+    /// Sets up the grid of `problem` and the grids coarser than it.
     pub fn new(problem: &mut Problem, shape: CycleShape) -> Result<FullMultigrid> {
         let multigrid = Multigrid::new(problem, shape)?;
         let mut coarser = Vec::new();
         for level in &multigrid.levels[1..] {
             let (operator, work) = (level.operator.clone(), level.work);
             let threads = &problem.threads;
-            let own = Problem::with_operator(level.grid, level.coefficients.clone(), operator, work, threads)?;
-            coarser.push((own, State::new(level.grid, (Load::Approach(0.0), 0.0), threads)?));
+            let coarse = Problem::with_operator(level.grid, level.coefficients.clone(), operator, work, threads)?;
+            coarser.push((coarse, State::new(level.grid, (Load::Approach(0.0), 0.0), threads)?));
         }
         Ok(FullMultigrid { multigrid, workspace: Workspace::default(), coarser, best: Best::default() })
     }
 
-    /// V-cycles on level `level`.
+    /// The method of V-cycles that begin on grid number `level`; 0 is the finest.
     pub fn cycles(&mut self, level: usize) -> Cycles<'_> {
         Cycles { multigrid: &mut self.multigrid, level, workspace: &mut self.workspace }
     }
@@ -50,7 +52,7 @@ impl FullMultigrid {
         self.multigrid.bytes() + coarser
     }
 
-    /// A start without a guess: each grid is solved from the pressures of the next coarser one.
+    /// Makes a start without a guess for the finest grid: solves the coarser grids, coarsest first, each from the pressures of the one before.
     pub fn start<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>, norm: &mut Norm) -> Result<()> {
         let count = self.coarser.len();
         if count == 0 {
@@ -59,6 +61,7 @@ impl FullMultigrid {
         }
         let highest = task.state.out_of_reach(task.lowest, task.problem.self_influence());
         self.restrict(task.state, highest);
+        // A cancelled solve only interpolates to the finest grid.
         for l in (0..count).rev() {
             if !task.monitor.is_cancelled() {
                 task.monitor.enter_grid();
@@ -84,7 +87,7 @@ impl FullMultigrid {
         Ok(())
     }
 
-    /// Restricts the undeformed distance and the load to all coarser grids; p = 0.
+    /// Restricts the undeformed distance and the load to all coarser grids, and sets p = 0 there. Distances above `highest` count as `highest`.
     fn restrict(&mut self, fine: &State, highest: f64) {
         for l in 0..self.coarser.len() {
             let (finer, coarser) = self.coarser.split_at_mut(l);
@@ -95,8 +98,8 @@ impl FullMultigrid {
         }
     }
 
-    /// Solves coarser grid l: the coarsest by NORM from step 1, the others by V-cycles from their state. A grid that is not solved only gives a worse
-    /// start.
+    /// Solves the coarser grid l: the coarsest by NORM from step 1 of the paper, the others by V-cycles from their state. If the solve does not
+    /// converge, the next finer grid has a worse start, which is no error.
     fn solve(&mut self, l: usize, goal: &Goal, norm: &mut Norm, monitor: &mut Monitor<'_>) -> Result<()> {
         let FullMultigrid { multigrid, workspace, coarser, best } = self;
         let coarsest = l + 1 == coarser.len();
@@ -120,8 +123,8 @@ impl FullMultigrid {
     }
 }
 
-/// Interpolates p and u from the coarser grid, piecewise constant; contact where p > 0 or e < 0. Elements with h above `highest` are out of reach:
-/// there p = 0.
+/// Interpolates p and u from the coarser grid as piecewise constants. C becomes the elements with p > 0 or e < 0. Elements with h above `highest` are
+/// out of reach of any contact: p = 0 there.
 fn interpolate(coarse: &State, fine: &mut State, highest: f64) {
     let (coarse_grid, fine_grid) = (coarse.grid, fine.grid);
     transfer::interpolate(&fine_grid, &coarse_grid, &coarse.p, &mut fine.p, |to, value| *to = value);

@@ -1,4 +1,5 @@
-//! The normal problem of a scene, on its admissible set.
+//! The normal problem of a scene, with the admissible set that the scene and the options choose: p >= 0, 0 <= p <= limit, or any p on a given contact
+//! area.
 
 use super::stages;
 use super::take_over;
@@ -12,7 +13,7 @@ use crate::progress::{Monitor, Outcome};
 use crate::scene::{Each, PressureLimit};
 
 impl Solver {
-    /// Solves the normal problem on the scene's admissible set.
+    /// Solves the normal problem. Returns the outcome and the tolerance used.
     pub(super) fn solve_normal(&mut self, asked: Asked<'_>, monitor: &mut Monitor<'_>) -> Result<(Outcome, f64)> {
         take_over::take_distance(&mut self.state, asked.scene.undeformed_distance, &self.problem.threads);
         match effects::limits(asked.scene) {
@@ -22,7 +23,7 @@ impl Solver {
         }
     }
 
-    /// Solves with limits, which are copied, as a callback may change the caller's.
+    /// Solves with pressure limits. Limits per element are copied, because a callback may change the caller's array.
     fn run_limited(
         &mut self,
         asked: Asked<'_>,
@@ -45,18 +46,21 @@ impl Solver {
             }
         };
         let mut solved = self.run(asked, set, monitor);
-        // An element at its limit with e near 0 is there by round-off of an equal pressure.
-        let on_the_way = self.state.reached_limit && {
+        // Whether iterates reached a limit, but the solution needs none: no element is held at its limit against a notable penetration. (An element
+        // at its limit with e near 0 has the same pressure without the limit, up to round-off.)
+        let only_iterates = self.state.reached_limit && {
             let scale = Survey::of(&self.state).scale;
             let held = |i: usize| self.state.deformed_distance(i) < -options.tolerance * scale;
             !(0..n).any(|i| self.state.at_limit[i] && held(i))
         };
         let converged = matches!(solved, Ok((Outcome::Converged, _)));
-        if on_the_way && converged && options.initial_guess != InitialGuess::Previous {
-            // Only iterates reached a limit. If the solve without limits converges and stays within them, its bits are the result.
+        if only_iterates && converged && options.initial_guess != InitialGuess::Previous {
+            // The scene is solved again without limits. If that solve converges and stays within the limits, it is the result: then the bits do not
+            // depend on limits that the solution does not reach. Otherwise the solution with limits is restored.
             let window = self.methods.projected_cg.current_window();
-            let found = (self.state.copy(&self.problem.threads)?, std::mem::take(&mut monitor.ledger), monitor.count);
-            monitor.ledger.estimates = found.1.estimates;
+            let with_limits = self.state.copy(&self.problem.threads)?;
+            let (ledger, count) = (std::mem::take(&mut monitor.ledger), monitor.count);
+            monitor.ledger.estimates = ledger.estimates;
             monitor.enter_grid();
             self.methods.forget_iterates();
             let without = self.run(asked, NonNegative, monitor);
@@ -65,7 +69,7 @@ impl Solver {
                 solved = without;
             } else {
                 let work_units = monitor.count.work_units;
-                (self.state, monitor.ledger, monitor.count) = found;
+                (self.state, monitor.ledger, monitor.count) = (with_limits, ledger, count);
                 (monitor.survey, self.has_result) = (None, true);
                 monitor.count.work_units = work_units;
                 self.methods.forget_iterates();
@@ -86,15 +90,15 @@ impl Solver {
         let Solver { problem, state, methods, set_up, has_result, .. } = self;
         let multigrid = set_up.without_multigrid.is_none();
         let stages = stages::stages::<S>(options.method, problem.symmetric, multigrid);
-        // From here on the last result is lost, unless this solve completes.
-        let solved = std::mem::replace(has_result, false);
-        if options.initial_guess != InitialGuess::Previous || !solved {
+        // From here on the state is overwritten, and the solver has a result only if this solve completes.
+        let had_result = std::mem::replace(has_result, false);
+        if options.initial_guess != InitialGuess::Previous || !had_result {
             methods.projected_cg.forget_windows();
         }
-        if !solved {
+        if !had_result {
             methods.projected_cg.forget_solutions();
         }
-        let (from, survey) = take_over::take_over(problem, state, set, (asked, solved), monitor)?;
+        let (from, survey) = take_over::take_over(problem, state, set, (asked, had_result), monitor)?;
         let mut task = Task { problem, state, lowest, set, goal: options.goal(), monitor };
         let is_unloaded = take_over::is_without_contact(task.state, lowest, S::FIXED)
             || take_over::is_even_without_force::<S>(task.state);

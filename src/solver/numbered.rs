@@ -1,6 +1,7 @@
-//! Enumerations whose variants have names, and numbers in the C ABI.
+//! A macro for enumerations that have names and numbers in the C ABI.
 
-/// Defines such an enumeration. A variant without a number has the next one.
+/// Defines an enumeration with `ALL`, `number()` and `name()`. A variant is written as `Variant = number: "name"`; without a number it has that of
+/// the variant before plus 1.
 macro_rules! numbered {
     ($(#[$doc:meta])* $kind:ident { $($(#[$each:meta])* $variant:ident $(= $number:literal)?: $name:literal,)+ }) => {
         $(#[$doc])*
@@ -10,7 +11,7 @@ macro_rules! numbered {
         }
 
         impl $kind {
-            /// All, in the order of their numbers in the C ABI.
+            /// All variants, in the order of their numbers in the C ABI.
             pub const ALL: [$kind; [$($name),+].len()] = [$($kind::$variant),+];
 
             /// The number in the C ABI.

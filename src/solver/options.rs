@@ -5,10 +5,10 @@ use crate::methods::multigrid::CycleShape;
 use crate::operator::Precision;
 use crate::progress::{Criterion, Goal};
 
-/// The method.
+/// The method of the normal problem.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// The fastest way known that is safe for this scene.
+    /// A list of methods that suits the scene, the fastest one first. If a method does not converge, the next one continues.
     #[default]
     Auto,
     /// Kalker's NORM: active set and conjugate gradients (section 3 of the paper).
@@ -21,20 +21,20 @@ pub enum Method {
     ProjectedCg,
 }
 
-/// Whether the contact area is found or given.
+/// Whether the contact area is solved for or given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ActiveSet {
     /// The contact conditions determine it.
     #[default]
     Free,
-    /// The caller gives it: the equations are solved on the given elements only (NORM's inner solve). Pressures may be negative.
+    /// The caller gives the contact area. The equations e = 0 are solved on its elements, and pressures may be negative (NORM's inner solve).
     Fixed,
 }
 
-/// The start of the iteration.
+/// Where the iteration starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InitialGuess {
-    /// No guess.
+    /// No guess: each method has a start of its own.
     #[default]
     None,
     /// The given pressures and contact area.
@@ -46,7 +46,7 @@ pub enum InitialGuess {
 /// Pressures and contact area to start from.
 #[derive(Clone, Copy, Debug)]
 pub struct Guess<'a> {
-    /// Pressures, `[my][mx]`; negative ones and those outside the contact area count as 0 (with a free contact area).
+    /// Pressures, `[my][mx]`. Pressures outside the contact area count as 0, and so do negative ones unless the contact area is given (FIXED).
     pub pressure: &'a [f64],
     /// Contact area.
     pub contact: &'a [bool],
@@ -55,29 +55,29 @@ pub struct Guess<'a> {
 /// How a scene is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// The method.
+    /// The method of the normal problem.
     pub method: Method,
-    /// The V-cycle, for methods with one.
+    /// Smoother and sweeps of the V-cycle, for multigrid methods.
     pub cycle: CycleShape,
-    /// Free or given contact area.
+    /// Whether the contact area is solved for or given.
     pub active_set: ActiveSet,
-    /// The start.
+    /// Where the iteration starts.
     pub initial_guess: InitialGuess,
-    /// See [`Criterion`]; between 0 and 1.
+    /// The bound on the measure that `criterion` chooses; between 0 and 1.
     pub tolerance: f64,
-    /// The measure of the tolerance.
+    /// Which measure has to fall below the tolerance.
     pub criterion: Criterion,
-    /// If positive: may stop once the residual is below this part of the estimated discretisation error (relative, of the force or the approach,
-    /// whichever is not prescribed). The estimate is that of a start without a guess. FULL_MULTIGRID and PROJECTED_CG start from the coarser grids.
-    /// NORM and MULTIGRID start from p = 0, which has no estimate of the force.
+    /// If positive: the solve may end once the residual is below this part of the estimated discretisation error. The error is relative, that of the
+    /// force or of the approach, whichever is not prescribed. It is estimated from the start of a solve without a guess. FULL_MULTIGRID and
+    /// PROJECTED_CG start from the coarser grids; NORM and MULTIGRID start from p = 0, which gives no estimate, and ignore this option.
     pub error_ratio: f64,
     /// Most cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid.
     pub max_cycles: usize,
-    /// Threads; 0: all cores.
+    /// Number of threads; 0 means all cores.
     pub threads: usize,
-    /// Arithmetic of the inner work.
+    /// The precision of products inside the iteration. The final check is always in double precision.
     pub precision: Precision,
-    /// Whether the errors of report and ledger are estimated.
+    /// Whether the discretisation errors in report and ledger are estimated.
     pub estimates: bool,
 }
 
@@ -99,11 +99,11 @@ impl Default for Options {
     }
 }
 
-/// Largest coarsest grid, in a direction: elimination in each cycle takes milliseconds for 16^2 unknowns, 20 seconds for 64^2.
+/// Most elements of the coarsest grid in each direction. Each cycle eliminates its unknowns: this takes milliseconds for 16^2, 20 seconds for 64^2.
 const LARGEST_COARSEST: usize = 16;
-/// More sweeps than this are a mistake.
+/// Most sweeps of a smoother in a cycle. A larger number is taken for a mistake.
 const MOST_SWEEPS: usize = 100;
-/// More threads than this are a mistake, and starting them might take the machine down.
+/// Most threads. A larger number is taken for a mistake; starting so many threads might exhaust the machine.
 const MOST_THREADS: usize = 1024;
 
 impl Options {
@@ -138,7 +138,7 @@ impl Options {
         check_threads("threads", self.threads)
     }
 
-    /// Refuses options that are invalid for solves of several grids without a guess.
+    /// Refuses options that are invalid for calls which solve several grids, each without a guess.
     pub(super) fn check_several_grids(&self) -> Result<()> {
         self.check()?;
         if self.is_fixed() {
@@ -150,12 +150,12 @@ impl Options {
         Ok(())
     }
 
-    /// Whether the contact area is the caller's.
+    /// Whether the contact area is given (active_set FIXED).
     pub(super) fn is_fixed(&self) -> bool {
         self.active_set == ActiveSet::Fixed
     }
 
-    /// The goal of a solve.
+    /// The goal of the loop: criterion, tolerance and limit on cycles.
     pub fn goal(&self) -> Goal {
         Goal { criterion: self.criterion, tolerance: self.tolerance, max_cycles: self.max_cycles as u64 }
     }

@@ -1,4 +1,4 @@
-//! The caller's tangential coefficients of a solver: later scenes need not name them, and may not name others.
+//! The caller's tangential influence coefficients. A solver keeps those of its set-up: later scenes may leave them out, and may not have others.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -9,8 +9,9 @@ use crate::error::{invalid, Error, Result};
 use crate::scene::{Bodies, Friction, Load, Scene};
 
 impl Solver {
-    /// A scene with the tangential coefficients of this solver; refuses others. `own` holds these coefficients, so that this solver may change while
-    /// the scene borrows them. With the caller's normal coefficients the bodies are not read.
+    /// Returns the scene with the tangential coefficients of this solver. Refuses a scene with other ones. `own` are the coefficients of this solver,
+    /// held by the caller of this function, so that the solver may change while the scene borrows them. If the caller also gave normal coefficients,
+    /// the elastic constants are not read, and arbitrary valid ones replace them.
     pub(super) fn with_own_tables<'s>(
         &self,
         scene: &'s Scene<'_>,
@@ -28,7 +29,7 @@ impl Solver {
             (Some(given), Some(own)) if !own.is(given) => {
                 refused(&format!("holds other coefficients than this solver has; {SET_THEM}"))
             }
-            // Invalid tables are refused first.
+            // Coefficients that are invalid are refused for that reason, not because the solver has none.
             (Some(_), None) => Effect::check(friction, &self.problem.grid)
                 .and_then(|()| refused("is given, but this solver was set up without: set up another one with it")),
             _ if bodies != scene.bodies => Ok(Cow::Owned(Scene { bodies, ..scene.clone() })),
@@ -36,12 +37,13 @@ impl Solver {
         }
     }
 
-    /// The caller's tangential coefficients, if any.
+    /// The caller's tangential influence coefficients, if this solver has any.
     pub(crate) fn own_tangential_tables(&self) -> Option<&KeptInfluence> {
         self.own_tables.as_deref()
     }
 
-    /// Refuses tangential coefficients that this solver cannot use.
+    /// Refuses tangential coefficients that cannot replace those of this solver: they must have the same layout, and cross tables if this solver has
+    /// them.
     pub fn check_tangential_influence(&self, friction: &Friction<'_>) -> Result<()> {
         let Some(given) = &friction.influence else {
             let name = self.own_tables.as_ref().map_or("friction->influence", |own| own.view().name());
@@ -57,7 +59,7 @@ impl Solver {
         given.check_for_any_motion(&self.problem.grid)
     }
 
-    /// Sets the tables of all later solves with friction. The last result stays.
+    /// Replaces the tangential coefficients for all later solves with friction. The last result does not change.
     pub fn set_tangential_influence(&mut self, friction: &Friction<'_>) -> Result<()> {
         self.check_tangential_influence(friction)?;
         let Some(given) = &friction.influence else { return Ok(()) };
@@ -77,7 +79,7 @@ impl Solver {
         Ok(())
     }
 
-    /// A solver of friction with the scene's tables.
+    /// Sets up a solver of the tangential problem with the coefficients of `friction`.
     fn tangent_of(&self, friction: &Friction<'_>) -> Result<Tangent> {
         let (bodies, load) = (Bodies::same(1.0, 0.0), Load::Approach(0.0));
         let scene = Scene { friction: Some(*friction), ..Scene::new(self.problem.grid, &[], bodies, load) };

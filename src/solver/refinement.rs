@@ -1,4 +1,4 @@
-//! Solution to an accuracy: successively finer grids until the estimated errors are small enough.
+//! Solves a scene to a given accuracy: on finer and finer grids, until the estimated errors are small enough.
 
 mod accuracy;
 mod next_grid;
@@ -26,35 +26,42 @@ use next_grid::{Next, Past};
 use outlook::{History, Outlook, Values};
 use solved::Solved;
 
-/// Writes the undeformed distance of a grid over the rectangle of the scene. Returns true to cancel.
+/// The caller's function that writes the undeformed distance of a grid over the rectangle of the scene. It returns true to cancel.
 pub type SurfaceCallback<'a> = &'a mut dyn FnMut(&Grid, &mut [f64]) -> bool;
 
 /// The end of a search for an accuracy.
 pub struct Refinement {
-    /// Converged: the target is met, or there is no contact on three grids. IterationLimit: a limit forbids the next grid, or ended its solve.
-    /// Cancelled: by the surface or the progress callback. Stagnated: the target is below round-off, there is no estimate, or a solve stagnated.
+    /// Why the search ended:
+    ///
+    /// - Converged: the targets are met, or there is no contact on three grids.
+    /// - IterationLimit: a limit of the caller forbids the next grid, or ended its solve.
+    /// - Cancelled: the surface or the progress callback cancelled.
+    /// - Stagnated: a target is below round-off, there is no estimate, or a solve stagnated.
     pub stop: Outcome,
     /// The reason, and the best error reached, in words.
     pub reason: String,
-    /// The solver of the grid used, with its result and ledger; `None` if cancelled before the first.
+    /// The solver of the grid whose result is returned; `None` if nothing was solved.
     pub solver: Option<Solver>,
     /// The last solve of that solver.
     pub report: Report,
-    /// Estimated relative error of the force (of the approach, when the force is prescribed), if known.
+    /// Estimated relative error of the force, or of the approach if the force is prescribed; `None` if it is unknown.
     pub reached: Option<f64>,
     /// Seconds for all grids together.
     pub seconds: f64,
 }
 
-/// The solve on one grid: solved, or the outcome, the reason, and the result so far.
+/// A solve on one grid: the result, or the outcome, the reason and the unfinished result, if there is one.
 type OnGrid = std::result::Result<Solved, (Outcome, String, Option<Solved>)>;
 
-/// Solves on the grid of `scene`, then on [finer](scaled) ones with twice (4, 8 times) the elements in both directions, until the estimated
-/// relative errors are at most the targets, with [enough](Quantity::enough_across) elements across the contact in both directions. `surface` writes
-/// the undeformed distance of each grid (that of `scene` is then not read); without one the scene's is [refined](crate::scene::refine).
+/// Solves on the grid of `scene`, then on [finer](scaled) grids with 2, 4 or 8 times the elements in both directions. The search ends when the
+/// estimated relative errors are at most the targets, and the contact has [enough](Quantity::enough_across) elements across in both directions.
 ///
-/// The first grid is solved regardless of the limits. The result of a finer grid that runs out of time or cycles is used only if its estimated error
-/// is smaller. A cancelled one is never used. Otherwise the result is that of the grid before.
+/// `surface` writes the undeformed distance of each grid, and that of `scene` is not read. Without `surface`, the undeformed distance of the scene is
+/// [refined](crate::scene::refine).
+///
+/// The first grid is solved regardless of the limits. The result is that of the last grid that was solved. If a finer grid runs out of time or
+/// cycles, its unfinished result is used instead if its estimated error is smaller. A cancelled or stagnated result is used only if there is no
+/// other.
 pub fn solve_to_accuracy(
     scene: &Scene<'_>,
     options: &Options,
@@ -80,7 +87,7 @@ pub fn solve_to_accuracy(
                 history.add(doublings, &solved.values, &mut solved.outlook);
                 solved
             }
-            // Coarser grids than the scene's only serve estimates.
+            // Grids coarser than the scene's only serve the error estimates, so they may fail.
             Ok(Err((stop, ..))) if doublings < 0 && stop != Outcome::Cancelled => {
                 doublings += 1;
                 continue;
@@ -115,14 +122,15 @@ pub fn solve_to_accuracy(
     Ok(Refinement::of(best, accuracy, (stop, why), began.elapsed().as_secs_f64()))
 }
 
-/// The coarsest grid of the history, in doublings of the scene's: two halvings if enough elements remain in the shorter direction.
+/// The coarsest grid of a sequence that ends with the scene's grid, in doublings of the latter (a number <= 0): two halvings, or fewer if the shorter
+/// direction would have less than `least` elements.
 fn first_of_history(grid: &Grid, least: usize) -> i32 {
-    // A grid of four rows gives no errors. A line has one row.
+    // A line has one row or column, and its other direction counts.
     let elements = if grid.mx.min(grid.my) == 1 { grid.mx.max(grid.my) } else { grid.mx.min(grid.my) };
     -[4, 2].into_iter().filter(|parts| elements / parts >= least).count().try_into().unwrap_or(0)
 }
 
-/// The better of the last solution and an unfinished one, by their estimated errors, which include those of the residual.
+/// The last solution or the unfinished one, whichever has the smaller estimated error. The errors include those of the residual.
 fn better(last: Option<Solved>, unfinished: Option<Solved>, accuracy: &Accuracy) -> Option<Solved> {
     let worst =
         |solved: &Option<Solved>| solved.as_ref().map_or(f64::INFINITY, |solved| accuracy.farthest(&solved.outlook).1);
@@ -133,6 +141,7 @@ fn better(last: Option<Solved>, unfinished: Option<Solved>, accuracy: &Accuracy)
 }
 
 impl Refinement {
+    /// The end of a search with the result `best`, for the reason `why`.
     fn of(best: Option<Solved>, accuracy: &Accuracy, (stop, why): (Outcome, String), seconds: f64) -> Refinement {
         let Some(Solved { solver, report, outlook, .. }) = best else {
             let reason = format!("{why}; nothing was solved");
@@ -152,6 +161,7 @@ impl Refinement {
     }
 }
 
+/// Refuses scenes and options that cannot be solved on several grids. With a surface callback the undeformed distance of the scene is not checked.
 fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> {
     options.check_several_grids()?;
     scene.grid.check()?;
@@ -166,7 +176,8 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
     scene.check_area(None)
 }
 
-/// Solves on the [scaled] grid, and takes the values of `wanted`. `late` is called after each cycle. It returns true to end the solve.
+/// Solves on the grid [scaled] by `doublings`, and computes the values of the `wanted` quantities. `late` is called after each cycle and returns true
+/// to end the solve.
 fn on_grid(
     scene: &Scene<'_>,
     options_and_wanted: (&Options, &[Quantity]),
@@ -177,7 +188,7 @@ fn on_grid(
 ) -> Result<OnGrid> {
     let grid = scaled(scene, doublings)?;
     match solve_on(scene, options_and_wanted, (grid, doublings), surface, progress, late) {
-        // A coarser grid may be refused where the scene's is not.
+        // An error on a grid coarser than the scene's does not end the search.
         Err(error) if doublings < 0 => Ok(Err((Outcome::Stagnated, error.to_string(), None))),
         Err(Error::Infeasible(message)) => {
             Err(Error::Infeasible(format!("on {} x {} elements: {message}", grid.mx, grid.my)))
@@ -186,7 +197,7 @@ fn on_grid(
     }
 }
 
-/// [`on_grid`], except that the refusal of a coarser grid is an error.
+/// [`on_grid`], but an error on a grid coarser than the scene's is returned as an error.
 fn solve_on(
     scene: &Scene<'_>,
     (options, wanted): (&Options, &[Quantity]),
@@ -199,7 +210,7 @@ fn solve_on(
     let mut written = None;
     if let Some(surface) = surface {
         let mut h = zeros(grid.len(), "undeformed distances")?;
-        // Elements that the callback does not write are refused.
+        // If the callback leaves an element unwritten, its NaN is refused below.
         h.fill(f64::NAN);
         if surface(&grid, &mut h) {
             return Ok(Err((Outcome::Cancelled, on("the surface callback cancelled"), None)));
@@ -209,30 +220,31 @@ fn solve_on(
     let is_given = doublings == 0 && written.is_none();
     let regridded = (!is_given).then(|| Regridded::new(scene, grid, written)).transpose()?;
     let scene = &regridded.as_ref().map_or_else(|| scene.clone(), |regridded| regridded.scene(scene));
-    let said = |error| match error {
+    let of_surface = |error| match error {
         Error::NotFinite(message) if surface.is_some() => Error::NotFinite(format!("surface: {message}")),
         other => other,
     };
-    let (mut solver, lowest) = Solver::for_scene(scene, options).map_err(said)?;
+    let (mut solver, lowest) = Solver::for_scene(scene, options).map_err(of_surface)?;
     let mut is_late = false;
     let mut watch = |told: &Progress| {
         is_late = late(told);
         is_late || progress.as_mut().is_some_and(|progress| progress(told))
     };
-    // Without a callback the surface ends between the given elements only, and finer grids have slopes of some elements where it jumps.
+    // Without a callback the surface is that of the scene's elements: on finer grids it ends exactly on edges of elements. Where the scene's heights
+    // jump, a grid with more elements has a slope over several of them, not a jump.
     let [exact_edges, exact_jumps] = [0, 1].map(|least| surface.is_none() && doublings >= least);
     let asked = Asked { exact_edges, exact_jumps, ..Asked::new((scene, lowest), options) };
     let (mut stop, report) = solver.solve_checked(asked, Some(&mut watch))?;
     let outlook = Outlook::of(&solver, &report, scene.load);
-    let of = match stop {
+    let computed = match stop {
         Outcome::Cancelled => None,
         _ => values(&mut solver, scene, &report, wanted, &mut watch)?,
     };
-    let of = of.unwrap_or_else(|| {
+    let of_wanted = computed.unwrap_or_else(|| {
         stop = Outcome::Cancelled;
         vec![]
     });
-    let values = Values { of, residual: report.residual(), lack_estimates: solver.lacks_estimates() };
+    let values = Values { of_wanted, residual: report.residual(), lack_estimates: solver.lacks_estimates() };
     let solved = Solved { solver, report, outlook, values };
     Ok(match stop {
         Outcome::Converged => Ok(solved),

@@ -1,4 +1,4 @@
-//! The report of a solve: its results, its cost, and its history.
+//! The report of a solve: its results, their errors, and its cost.
 
 use super::falling::Falling;
 use super::Method;
@@ -8,29 +8,29 @@ use crate::grid::Grid;
 use crate::progress::{Counters, DiscretisationError, Measures, Monitor, Outcome};
 use crate::visco;
 
-/// The limit of the accuracy of a solution; numbered as in the C ABI.
+/// What limits the accuracy of a solution; numbered as in the C ABI.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Limit {
-    /// Not known.
+    /// Unknown: there is no estimate.
     #[default]
     Unknown,
-    /// The grid. A smaller tolerance would not improve the accuracy.
+    /// The grid: its error exceeds that of the residual. A smaller tolerance would not improve the accuracy.
     Grid,
-    /// The tolerance. The residual may correspond to a larger error than that of the grid.
+    /// The tolerance: the error of the residual may exceed that of the grid.
     Tolerance,
 }
 
-/// Cost and error with elements of half the size, where they are known.
+/// Predicted cost and error with elements of half the size, if they are known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Halving {
     /// Seconds of a solve, with the measured growth n^1.1 in the number of elements (docs/performance.md).
     pub seconds: Option<f64>,
-    /// The error of the force (or the approach) on this and finer grids.
+    /// The error of the force, or of the approach if the force is prescribed, on this and finer grids.
     pub error: Option<Falling>,
 }
 
 impl Halving {
-    /// The error of the force (or the approach) after halving.
+    /// The predicted error of the force, or of the approach if the force is prescribed, with elements of half the size.
     pub fn force(&self) -> Option<f64> {
         self.error.map(|error| error.after(1))
     }
@@ -43,15 +43,15 @@ pub struct Report {
     pub count: Counters,
     /// The result.
     pub measures: Measures,
-    /// The discretisation error of the result.
+    /// The estimated discretisation errors of the result.
     pub error: DiscretisationError,
     /// The tolerance of the solve: that of the options, or the one that follows from `error_ratio`.
     pub tolerance: f64,
-    /// The limit of the accuracy.
+    /// What limits the accuracy.
     pub limit: Limit,
-    /// Cost and error of the next finer grid.
+    /// Predicted cost and error with elements of half the size.
     pub halving: Halving,
-    /// Seconds of set-up. 0 if the solver was set up before.
+    /// Seconds of the set-up, in the first report after it. 0 in later reports.
     pub setup_seconds: f64,
     /// Seconds of the solve.
     pub solve_seconds: f64,
@@ -68,14 +68,14 @@ pub struct Report {
 }
 
 impl Report {
-    /// A report from the counters of a solve and its last ledger row, that of the finest grid. Errors are estimated later.
+    /// A report from the counters of a solve and its last ledger row, that of the finest grid. It has no errors yet.
     pub(super) fn of(monitor: &Monitor<'_>, tolerance: f64) -> Report {
         let last = monitor.ledger.rows.last();
         let measures = last.map(|row| row.measures).unwrap_or_default();
         Report { count: monitor.count, measures, tolerance, ..Report::default() }
     }
 
-    /// Products of the tangential problem. 0 without friction.
+    /// The number of products of the tangential problem, in work units. 0 without friction.
     pub(super) fn tangential_products(&self) -> f64 {
         self.friction.map_or(0.0, |found| found.products)
     }
@@ -98,7 +98,7 @@ impl Report {
         }
     }
 
-    /// A sentence on the limit of the accuracy and on a finer grid. None if they are not known.
+    /// A sentence that tells what limits the accuracy, and what a finer grid would cost and gain. None if they are not known.
     pub fn advice(&self) -> Option<String> {
         let what = match self.limit {
             Limit::Unknown => return None,

@@ -1,4 +1,4 @@
-//! The further problems of a scene: friction, and effects that are coupled with the normal problem.
+//! The problems that a scene has besides the normal one: friction, and effects that are coupled with the normal problem.
 
 use super::beside::Beside;
 use super::tangential::{Tangent, Turn};
@@ -12,11 +12,11 @@ use crate::progress::{Monitor, Outcome};
 use crate::scene::{Friction, Scene};
 
 impl Solver {
-    /// Checks that a step that continues has a previous state.
+    /// Refuses a step that continues an earlier one if this solver holds none.
     pub(super) fn check_continues(&self, scene: &Scene<'_>) -> Result<()> {
         for (k, name, Continues { from, .. }) in effects::continuing(scene) {
             let has_step = match name {
-                // Tractions of `solve_tangential` have no normal problem.
+                // The step before may be one of `solve_tangential`, which makes no result of the normal problem. So `has_result` is not asked.
                 Friction::NAME => match &self.friction {
                     Some(tangent) => tangent.last_step().is_some(),
                     None => self.step_before.is_some(),
@@ -33,7 +33,8 @@ impl Solver {
         Ok(())
     }
 
-    /// Solves the further problems of a scene, after the normal problem ended with `outcome`. Returns the report of friction with the outcome.
+    /// Solves the coupled problems of a scene, after the normal problem ended with `outcome`, and keeps their state for a next step. Returns the
+    /// outcome of all problems and the report of friction.
     pub(super) fn solve_beside(
         &mut self,
         scene: &Scene<'_>,
@@ -62,8 +63,8 @@ impl Solver {
         solved
     }
 
-    /// Solves the further problems, with the requested derivatives. An error restores the last tractions. A cancelled
-    /// solve stays cancelled.
+    /// Solves the coupled problems, in turns with the normal one if needed, and computes the requested derivatives of friction. After an error the
+    /// last tractions are restored.
     fn solve_step(
         &mut self,
         tangent: Option<&mut Tangent>,
@@ -75,11 +76,11 @@ impl Solver {
         let threads = self.problem.threads.clone();
         check_derivatives(scene, tangent.as_deref())?;
         let last = tangent.as_deref().map_or(Ok(None), Tangent::last)?;
-        // Derivatives of unlike bodies are computed after the iteration between both problems.
-        let follow = tangent.as_deref().is_some_and(|tangent| !tangent.is_of_like_bodies());
-        let during =
-            scene.friction.map(|friction| Friction { sensitivities: friction.sensitivities && !follow, ..friction });
-        let friction = tangent.zip(during.as_ref()).map(|(tangent, friction)| {
+        // For unlike bodies the derivatives are computed after the turns, not in each of them.
+        let is_unlike = tangent.as_deref().is_some_and(|tangent| !tangent.is_of_like_bodies());
+        let in_turns =
+            scene.friction.map(|friction| Friction { sensitivities: friction.sensitivities && !is_unlike, ..friction });
+        let friction = tangent.zip(in_turns.as_ref()).map(|(tangent, friction)| {
             TangentialTurn::new(tangent, Turn { scene, friction, options, threads: &threads })
         });
         let others = effects::coupled(scene, &mut beside.histories)?;
@@ -103,7 +104,7 @@ impl Solver {
         }
     }
 
-    /// The derivatives of the tangential forces of unlike bodies, if they are requested.
+    /// Computes the derivatives of the tangential forces of unlike bodies, if they are requested.
     fn add_derivatives(&mut self, turns: &mut Turns<'_>, scene: &Scene<'_>, monitor: &mut Monitor<'_>) -> Result<()> {
         let Some(TangentialTurn { tangent, turn, found: Some(found), .. }) = &mut turns.friction else { return Ok(()) };
         let wanted = scene.friction.as_ref().filter(|friction| friction.sensitivities && !tangent.is_of_like_bodies());
@@ -116,7 +117,7 @@ impl Solver {
     }
 }
 
-/// Rejects derivatives of unlike bodies' forces if an effect adds displacements, which the derivatives do not include.
+/// Refuses derivatives of the forces of unlike bodies if the scene has another coupled effect: the derivatives do not include its displacements.
 fn check_derivatives(scene: &Scene<'_>, tangent: Option<&Tangent>) -> Result<()> {
     let wanted = scene.friction.is_some_and(|friction| friction.sensitivities)
         && tangent.is_some_and(|tangent| !tangent.is_of_like_bodies());

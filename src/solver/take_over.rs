@@ -1,4 +1,5 @@
-//! The start of a solve: p = 0, the caller's guess, or the last solution.
+//! Prepares the state for a solve: its load, and its start, which is p = 0, the caller's guess, or the last solution. Also solutions that are known
+//! without iteration.
 
 use std::ops::Range;
 
@@ -12,10 +13,10 @@ use crate::scene::Load;
 use crate::sums::{mean, ROUND_OFF};
 use crate::threads::Threads;
 
-/// Residual of a guess, relative to `h - approach` over C, above which it is discarded; p = 0 has 1.
+/// A guess whose residual, relative to the norm of `h - approach` over C, exceeds this is discarded. p = 0 has the relative residual 1.
 const WORST_GUESS: f64 = 1e3;
 
-/// Copies the undeformed distance, as a callback may change the caller's.
+/// Copies the undeformed distance `given` to the state. A copy is needed because a callback may change the caller's array.
 pub fn take_distance(state: &mut State, given: &[f64], threads: &Threads) {
     let mx = state.grid.mx;
     threads.for_a_pass(given.len()).for_each_plain_row(&mut state.h, mx, |y, row| {
@@ -23,18 +24,18 @@ pub fn take_distance(state: &mut State, given: &[f64], threads: &Threads) {
     });
 }
 
-/// Takes the load and the start; the state has the undeformed distance. Afterwards u is A p, or p = 0. `solved`: whether `state` holds the
-/// last solution. Returns the survey of a start other than p = 0.
+/// Sets load and start of the state, which has the undeformed distance already. `has_solution` tells whether the state holds the last solution.
+/// Returns which start was taken, and its survey unless it is p = 0. u is then A p.
 pub fn take_over<S: AdmissibleSet>(
     problem: &mut Problem,
     state: &mut State,
     set: S,
-    (asked, solved): (Asked<'_>, bool),
+    (asked, has_solution): (Asked<'_>, bool),
     monitor: &mut Monitor<'_>,
 ) -> Result<(Start, Option<Survey>)> {
     let Asked { scene, options, .. } = asked;
     let nothing = (Start::Nothing, None);
-    let from = take_pressures(state, asked, solved);
+    let from = take_pressures(state, asked, has_solution);
     state.load = scene.load;
     state.round_off = problem.round_off();
     state.reached_limit = false;
@@ -43,24 +44,24 @@ pub fn take_over<S: AdmissibleSet>(
     }
     if from == Start::Nothing {
         state.forget();
-        // The solve does not start from the last result.
+        // The approach of the last result must not affect this solve.
         if let Load::Force(_) = scene.load {
             state.approach = 0.0;
         }
         return Ok(nothing);
     }
     clean(state, set);
-    // A guess of p = 0 is discarded.
+    // Pressures that are all 0 are no guess.
     if !S::FIXED && state.p.iter().all(|p| *p == 0.0) {
         state.forget();
         return Ok(nothing);
     }
     let is_scaled = balance(problem, state, set)?;
     monitor.count_products(problem.take_products(), 1.0);
-    // A guess far worse than p = 0 would cost time or overflow.
+    // A start far worse than p = 0 would take many iterations or overflow.
     let mut survey = Survey::by(state, &problem.threads);
     if is_scaled && options.goal().holds(&survey, 0.0, set) {
-        // This may be the solution, which only a fresh product certifies, not one scaled with the load.
+        // The start may be the solution. Only a fresh product certifies, and u was scaled with the load.
         problem.refresh(state, set)?;
         monitor.count_products(problem.take_products(), 1.0);
         survey = Survey::by(state, &problem.threads);
@@ -79,10 +80,10 @@ pub fn take_over<S: AdmissibleSet>(
     Ok((from, Some(Survey::by(state, &problem.threads))))
 }
 
-/// The pressures and the contact area to start from.
-fn take_pressures(state: &mut State, asked: Asked<'_>, solved: bool) -> Start {
-    let fixed = asked.options.is_fixed();
-    // Elements at their limit were in contact.
+/// Sets the pressures and the contact area to start from: the guess, or those in the state. Returns which of them.
+fn take_pressures(state: &mut State, asked: Asked<'_>, has_solution: bool) -> Start {
+    let is_fixed = asked.options.is_fixed();
+    // C does not contain the elements at their limit. In a start they belong to C.
     for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
         *inside |= std::mem::take(at_limit);
     }
@@ -93,28 +94,28 @@ fn take_pressures(state: &mut State, asked: Asked<'_>, solved: bool) -> Start {
             state.u_is = Freshness::Stale;
             Start::Given
         }
-        (from, Some(guess)) if fixed => {
-            let goes_on = from == InitialGuess::Previous;
-            if !(goes_on && solved) {
+        (from, Some(guess)) if is_fixed => {
+            let is_previous = from == InitialGuess::Previous;
+            if !(is_previous && has_solution) {
                 state.p.fill(0.0);
                 state.u_is = Freshness::Stale;
             }
             state.contact.copy_from_slice(guess.contact);
-            if goes_on {
+            if is_previous {
                 Start::Previous
             } else {
                 Start::Given
             }
         }
-        (InitialGuess::Previous, _) if solved => Start::Previous,
+        (InitialGuess::Previous, _) if has_solution => Start::Previous,
         _ => Start::Nothing,
     }
 }
 
-/// Makes pressures admissible, on elements of C with a surface.
+/// Removes elements without a surface from C, and makes the pressures admissible: 0 outside C.
 fn clean<S: AdmissibleSet>(state: &mut State, set: S) {
     for start in (0..state.p.len()).step_by(state.grid.mx) {
-        // Few rows need a change; the compiler vectorises this test.
+        // First tests whether the row needs a change: few do, and the compiler vectorises the test.
         let row = start..start + state.grid.mx;
         let (p, h, contact) = (&state.p[row.clone()], &state.h[row.clone()], &state.contact[row.clone()]);
         let elements = p.iter().zip(h).zip(contact).zip(row.clone());
@@ -145,8 +146,9 @@ fn clean<S: AdmissibleSet>(state: &mut State, set: S) {
     state.project(set);
 }
 
-/// Moves elements of C at their limit out of C, if others remain there, which the residual needs. Otherwise they would be free elements with their e
-/// as the residual, and the first step would move them all. Those with e > 0 enter C again by step (4.2).
+/// Moves elements of C whose pressure is at the limit out of C, to the elements at their limit. In C their e would count as a residual, and the first
+/// step of a method would change all their pressures. Step (4.2) returns those with e > 0 to C. At least one element must remain in C, because the
+/// residual is a norm over C; otherwise nothing is moved.
 fn stay_at_limits<S: AdmissibleSet>(state: &mut State, set: S) {
     let stays = |state: &State, i: usize| state.contact[i] && state.p[i] > 0.0 && state.p[i] >= set.limit(i);
     if (0..state.p.len()).any(|i| state.contact[i] && !stays(state, i)) {
@@ -158,7 +160,8 @@ fn stay_at_limits<S: AdmissibleSet>(state: &mut State, set: S) {
     }
 }
 
-/// Makes p carry the prescribed force, and u = A p. If u is exact, both are scaled without a product. Returns whether they were scaled.
+/// Makes p carry the prescribed force, with u = A p. If u is A p before, p and u are scaled by a common factor, without a product. Returns whether
+/// they were scaled.
 fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<bool> {
     if state.u_is != Freshness::Exact {
         problem.refresh(state, set)?;
@@ -177,8 +180,8 @@ fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -
     Ok(factor != Some(1.0))
 }
 
-/// Whether a prescribed force is the greatest within the limits, up to round-off. Then all elements are at their limit. No iteration finds
-/// this: the force of an element in contact would be round-off.
+/// If a prescribed force is the greatest that the pressure limits allow, up to round-off, puts all elements at their limit and returns true. No
+/// iteration finds this solution: what remains of the force for an element in C would be round-off.
 pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<bool> {
     let Load::Force(force) = state.load else { return Ok(false) };
     if !S::LIMITED {
@@ -195,15 +198,15 @@ pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, 
     Ok(true)
 }
 
-/// Whether the approach is the mean of h or more, with two periods. A uniform p displaces nothing, so that the mean of e is negative with any p, and elements
-/// reach their limits.
+/// Whether the approach is the mean of h or more, with two periods. A uniform pressure displaces nothing then. So the mean of e is not positive with any p, and
+/// elements reach their limits.
 pub fn must_reach_limits<S: AdmissibleSet>(problem: &Problem, state: &State, set: S) -> bool {
     let Load::Approach(approach) = state.load else { return false };
     let are_finite = || (0..state.p.len()).all(|i| set.limit(i) < f64::INFINITY || state.h[i].is_infinite());
     S::LIMITED && problem.coefficients.is_mean_free() && approach >= mean(&state.h) && are_finite()
 }
 
-/// Puts all elements with a surface at their limit.
+/// Puts all elements with a surface at their limit, with u = A p by a product.
 pub fn put_at_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<()> {
     for i in 0..state.p.len() {
         let at_limit = state.h[i].is_finite();
@@ -217,7 +220,8 @@ pub fn put_at_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State,
     Ok(())
 }
 
-/// Whether there is no contact: the force is 0, or the approach is less than the `lowest` distance. Then p = 0 solves the problem.
+/// If there is no contact, sets the solution p = 0 and returns true: the prescribed force is 0, or the prescribed approach is less than the `lowest`
+/// distance. A `fixed` contact area always has contact.
 pub fn is_without_contact(state: &mut State, lowest: f64, fixed: bool) -> bool {
     let nothing = match state.load {
         Load::Approach(approach) => !fixed && lowest > approach,
@@ -232,8 +236,8 @@ pub fn is_without_contact(state: &mut State, lowest: f64, fixed: bool) -> bool {
     nothing
 }
 
-/// Whether a given contact area with an even surface carries no force, so that p = 0 solves the problem. No iteration finds this: the
-/// distances are 0, and no residual is small relative to them.
+/// If the prescribed force is 0, and h is constant on a given contact area up to round-off, sets the solution p = 0 and returns true. No iteration
+/// accepts this solution: all `h - approach` are 0, and no residual is small relative to that.
 pub fn is_even_without_force<S: AdmissibleSet>(state: &mut State) -> bool {
     if !S::FIXED || state.load != Load::Force(0.0) {
         return false;

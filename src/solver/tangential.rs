@@ -1,4 +1,4 @@
-//! Friction, after the normal problem: the tangential problem with its pressures, and for unlike bodies both in turns.
+//! The tangential problem of a solver, with the pressures of a normal problem. For unlike bodies it is coupled with the normal problem.
 
 use super::unlike_bodies::UnlikeBodies;
 use super::{Options, Outcome};
@@ -12,71 +12,73 @@ use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed, Scene};
 use crate::threads::Threads;
 
-/// If the prescribed force exceeds the traction bounds of the pressures, the problem is solved for this part of the largest
-/// force within them. Nearly all elements slip then, and the next pressures carry the force of full slip to 1e-4
-/// (tests/friction/unlike_forces.rs).
+/// If the pressures cannot carry the prescribed force, the tangential problem is solved for this part of the largest force that they carry. Nearly
+/// all elements slip then. The forces that the next pressures carry in full slip are correct to 1e-4 (tests/friction/unlike_forces.rs).
 const IN_REACH: f64 = 1.0 - 1e-7;
 
-/// The state of a solver for scenes with friction.
+/// The tangential problem of a grid and a pair of bodies, with its last result.
 pub struct Tangent {
     solver: Solver,
-    /// The coupling of unlike bodies.
+    /// The coupling with the normal problem; None for like bodies.
     unlike: Option<UnlikeBodies>,
 }
 
-/// A step of another solver, from which friction may continue.
+/// The end of a step of another solver, from which a step may continue.
 pub(crate) struct StepBefore {
+    /// The tractions of each element.
     pub traction: Vec<Vector>,
+    /// The friction coefficient and the yield limit of each element.
     pub particles: Vec<Particle>,
-    /// The pressures of the step, for unlike bodies.
+    /// The pressures, for unlike bodies.
     pub pressure: Option<Vec<f64>>,
 }
 
-/// The constant inputs of turns of the normal and the tangential problem.
+/// The inputs of a tangential solve that stay the same in all turns.
 pub struct Turn<'a> {
-    /// The scene, with its own undeformed distance.
+    /// The scene, with its undeformed distance, not a displaced one.
     pub scene: &'a Scene<'a>,
-    /// The friction of the scene.
+    /// The friction to solve for: that of the scene, or one derived from it.
     pub friction: &'a Friction<'a>,
-    /// The options.
+    /// Tolerance, limits and estimates.
     pub options: &'a Options,
-    /// The threads.
+    /// The threads of the solve.
     pub threads: &'a Threads,
 }
 
 impl<'a> Turn<'a> {
-    /// The start: the caller's tractions, or those before the step.
+    /// Where the first turn starts: from the caller's initial tractions if there are any, else from the tractions before the step.
     pub fn start(&self) -> Start<'a> {
         self.friction.initial.map_or(Start::Before, Start::Given)
     }
 }
 
-/// The coupling of the tractions of a scene with its pressures; none for like bodies.
+/// The coefficients that couple tractions and pressures of a scene; None for like bodies.
 fn coupling(scene: &Scene<'_>) -> Result<Option<Source>> {
     Ok(match scene.friction.as_ref().and_then(|friction| friction.influence) {
-        Some(own) => CrossTables::new(&own)?.map(Source::Tables),
+        Some(tables) => CrossTables::new(&tables)?.map(Source::Tables),
         None => Some(Compliance::of(&scene.bodies).unlike).filter(|unlike| *unlike != 0.0).map(Source::HalfSpace),
     })
 }
 
-/// Whether tractions change the pressures of a scene.
+/// Whether tractions displace the surfaces of a scene along the normal, and so change the pressures.
 pub fn is_of_unlike_bodies(scene: &Scene<'_>) -> Result<bool> {
     Ok(coupling(scene)?.is_some())
 }
 
 impl Tangent {
-    /// The tangential problem of a scene's grid and bodies.
+    /// Sets up the tangential problem for the grid and the bodies of a scene. Its coefficients are the caller's if given, else those of coated bodies
+    /// or of half-spaces.
     pub fn new(scene: &Scene<'_>, options: &Options, threads: &Threads) -> Result<Tangent> {
         let Grid { dx, dy, .. } = scene.grid;
-        let own = scene.friction.as_ref().and_then(|friction| friction.influence);
+        let given = scene.friction.as_ref().and_then(|friction| friction.influence);
         let plain = scene.plain();
-        let coating = match (&own, &scene.coating) {
+        let coating = match (&given, &scene.coating) {
             (None, Some(coating)) => coating.of_both(&plain)?.map(|coat| (coat, coating.at_surface(&plain))),
             _ => None,
         };
         let below = Compliance::of(&scene.bodies);
-        let tangential = match (&own, coating) {
-            (Some(own), _) => Tangential::of_tables(dx, dy, own)?,
+        let tangential = match (&given, coating) {
+            (Some(tables), _) => Tangential::of_tables(dx, dy, tables)?,
             (None, Some((coat, surface))) => Tangential::of_coated(dx, dy, Compliance::of(&surface), (coat, below)),
             (None, None) => Tangential::new(dx, dy, below),
         };
@@ -85,7 +87,7 @@ impl Tangent {
         Ok(Tangent { solver, unlike: unlike.transpose()? })
     }
 
-    /// The last result.
+    /// The last result; None without one.
     pub fn solution(&self) -> Option<&Solution> {
         self.solver.solution()
     }
@@ -95,7 +97,7 @@ impl Tangent {
         self.solver.into_solution()
     }
 
-    /// Takes over the last result of `other`, which has other coefficients.
+    /// This tangential problem with the last result of `other`, which has other coefficients.
     pub fn with_last_of(mut self, mut other: Tangent) -> Tangent {
         self.solver.take_last_of(&mut other.solver);
         if let (Some(unlike), Some(before)) = (&mut self.unlike, &mut other.unlike) {
@@ -114,18 +116,18 @@ impl Tangent {
         self.solver.tangential().is_coated()
     }
 
-    /// The pressures of the last step; none for like bodies.
+    /// The pressures of the last step of unlike bodies. None for like bodies, or without a step.
     pub fn pressures_before(&self) -> Option<&[f64]> {
         self.last_step().and(self.unlike.as_ref()).map(UnlikeBodies::last_pressure)
     }
 
-    /// Takes a step of another solver.
+    /// Sets the last step to that of another solver.
     pub fn take_step(&mut self, step: StepBefore) -> Result<()> {
         step.pressure.iter().for_each(|pressure| self.keep_pressures(pressure));
         self.solver.take_step(step.traction, step.particles)
     }
 
-    /// Records a solve without friction: its result has no tractions, and those of the last step stay.
+    /// Records that a scene without friction was solved: its result has no tractions. A later step may still continue from the last tractions.
     pub fn pass_over(&mut self) {
         self.solver.pass_over();
     }
@@ -140,7 +142,8 @@ impl Tangent {
         self.solver.bytes() + self.unlike.as_ref().map_or(0, UnlikeBodies::bytes)
     }
 
-    /// Solves the tangential problem with pressures; `again`: the same step with other pressures.
+    /// Solves the tangential problem with these pressures. If `again`, the last result is the start, and the state before the step is kept: the same
+    /// step is solved with other pressures.
     pub fn solve(
         &mut self,
         turn: &Turn<'_>,
@@ -151,6 +154,7 @@ impl Tangent {
         self.solve_from(if again { Start::Again } else { turn.start() }, turn, pressure, monitor)
     }
 
+    /// Solves the tangential problem with these pressures from a given start.
     pub(super) fn solve_from(
         &mut self,
         start: Start<'_>,
@@ -172,9 +176,9 @@ impl Tangent {
         self.solver.solve(&request, &mut |grid, residual| monitor.uncounted_done(grid, residual))
     }
 
-    /// Solves with the pressures of a normal problem that ended with `outcome`. If it did not converge, or is to be solved again for unlike bodies,
-    /// its pressures may be too small for the forces. Then the forces are [a little less](IN_REACH) than the pressures carry, and the refusal is returned
-    /// as well.
+    /// Solves with the pressures of a normal problem that ended with `outcome`. If the pressures do not carry the prescribed forces, this is an
+    /// error, unless the pressures are not final: the normal problem did not converge, or unlike bodies need further turns. Then the problem is
+    /// solved for forces [slightly below](IN_REACH) those that the pressures carry, and the error is the third value.
     pub fn solve_after(
         &mut self,
         outcome: Outcome,
@@ -200,36 +204,36 @@ impl Tangent {
         }
     }
 
-    /// The excess of the last forces over the given ones, and the creepages found with them, times the length rolled.
+    /// The last forces less the given ones, and the creepages of the last result times the length rolled.
     pub fn excess(&self, friction: &Friction<'_>, found: &Report) -> (Vector, Vector) {
         (self.solver.excess(friction, found), self.solver.offset())
     }
 
-    /// The displacement by the tractions of full slip at the pressures of the last result.
+    /// The displacement by the tractions of full slip with the pressures of the last result.
     pub fn full_displacement(&self) -> f64 {
         self.solver.full_displacement()
     }
 
-    /// Adds the displacements along the normal by the last tractions to an undeformed distance: none for like bodies.
+    /// Adds the displacements along the normal by the last tractions to an undeformed distance. For like bodies these are 0.
     pub fn displace(&mut self, distance: &mut [f64]) {
         if let (Some(unlike), Some(solution)) = (&mut self.unlike, self.solver.solution()) {
             unlike.displace(&solution.traction, distance);
         }
     }
 
-    /// The parts of the linearised problem of unlike bodies: see [`UnlikeBodies`] and [`Solver::change`]. None for like bodies.
+    /// The tangential problem and the coupling of unlike bodies, for their linearised problem (see [`Solver::change`]). None for like bodies.
     pub fn both(&mut self) -> Option<(&mut Solver, &mut UnlikeBodies)> {
         Some((&mut self.solver, self.unlike.as_mut()?))
     }
 
-    /// Keeps the pressures of a finished step for the next one.
+    /// Keeps the pressures of a finished step of unlike bodies for the next step.
     pub fn keep_pressures(&mut self, p: &[f64]) {
         if let Some(unlike) = &mut self.unlike {
             unlike.keep_pressures(p);
         }
     }
 
-    /// A copy of the last result, to [restore](Tangent::go_back) it; none for like bodies, whose result is replaced only by a completed solve.
+    /// A copy of the last result, which [`go_back`](Tangent::go_back) restores. None for like bodies: a failed solve does not replace their result.
     pub fn last(&self) -> Result<Option<Last>> {
         match self.unlike {
             Some(_) => self.solver.last(),
@@ -237,7 +241,7 @@ impl Tangent {
         }
     }
 
-    /// Restores the last result after turns without a result.
+    /// Restores the last result after turns that failed.
     pub fn go_back(&mut self, last: Option<Last>) {
         if self.unlike.is_some() {
             self.solver.go_back(last);

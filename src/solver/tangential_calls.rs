@@ -1,4 +1,4 @@
-//! Calls that solve the tangential problem alone, with given pressures.
+//! Public calls that solve the tangential problem alone, with given pressures.
 
 use std::borrow::Cow;
 
@@ -15,7 +15,7 @@ use crate::sums::in_blocks;
 use crate::threads::Threads;
 
 impl Solver {
-    /// Takes the solver of friction, or sets one up. The caller puts it back.
+    /// Moves the tangential problem out of this solver, or sets one up. The caller of this function puts it back into `friction`.
     pub(super) fn take_tangent(&mut self, scene: &Scene<'_>, options: &Options) -> Result<Box<Tangent>> {
         match self.friction.take() {
             Some(tangent) => Ok(tangent),
@@ -27,17 +27,18 @@ impl Solver {
         }
     }
 
-    /// Takes a step of another solver on the same grid, from which friction may continue, into one without friction so far.
+    /// Sets the step from which the first step with friction may continue: that of another solver on the same grid. This solver must not have solved
+    /// friction yet.
     pub(crate) fn take_step(&mut self, step: StepBefore) {
         self.step_before = Some(step);
     }
 
-    /// The pressures of the last step with friction, of unlike bodies.
+    /// The pressures of the last step with friction of unlike bodies. None for like bodies, or without a step.
     pub(crate) fn pressures_before(&self) -> Option<&[f64]> {
         self.friction.as_deref().and_then(Tangent::pressures_before)
     }
 
-    /// [`solve_tangential`] with this solver's coefficients and the tractions of the step before.
+    /// [`solve_tangential`] with the tangential coefficients of this solver. The step may continue from the tractions of the last one.
     pub fn solve_tangential(
         &mut self,
         scene: &Scene<'_>,
@@ -45,22 +46,22 @@ impl Solver {
         options: &Options,
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, &Solution, Report)> {
-        let own = self.own_tables.clone();
-        let scene = &*self.with_own_tables(scene, own.as_deref())?;
+        let own_tables = self.own_tables.clone();
+        let scene = &*self.with_own_tables(scene, own_tables.as_deref())?;
         let friction = self.check_tangential(scene, options)?;
         let pressure = &*positive(&scene.grid, pressure)?;
         let threads = self.problem.threads.clone();
         let mut tangent = self.take_tangent(scene, options)?;
         let turn = Turn { scene, friction, options, threads: &threads };
-        let solved = alone(&mut tangent, &turn, pressure, progress);
+        let solved = solve_alone(&mut tangent, &turn, pressure, progress);
         let tangent = &*self.friction.insert(tangent);
         let (outcome, report) = solved?;
-        // A completed solve has a result.
+        // This error cannot occur: a completed solve has a result.
         let Some(solution) = tangent.solution() else { return invalid("there is no result".into()) };
         Ok((outcome, solution, report))
     }
 
-    /// The friction of a scene, which must be that of the set-up. Its distance and its load are not used.
+    /// Checks a scene and options against the set-up, and returns the friction of the scene. The distance and the load of the scene are not checked.
     pub(super) fn check_tangential<'s>(&self, scene: &'s Scene<'_>, options: &Options) -> Result<&'s Friction<'s>> {
         let friction = scene.tangential()?;
         self.set_up.check_options(options)?;
@@ -68,15 +69,16 @@ impl Solver {
         Ok(friction)
     }
 
-    /// Tractions, slip and stick area of the last step with friction, with pressures of the normal problem or with given ones.
+    /// Tractions, slip and stick area of the last step with friction. The step may be one of [`solve`](Self::solve) or of
+    /// [`solve_tangential`](Self::solve_tangential).
     pub fn tractions(&self) -> Option<&Solution> {
         self.friction.as_deref().and_then(Tangent::last_step)
     }
 }
 
-/// Solves the tangential problem of a scene alone, with given pressures `[my][mx]`; elements without positive pressure are not in contact. The
-/// scene's distance and load are not used. For unlike bodies the pressures displace the surfaces sideways, but the tractions do not change the
-/// pressures. With adhesion the pressures are contact pressures q.
+/// Solves the tangential problem of a scene alone, with given pressures `[my][mx]`. Elements without positive pressure are not in contact. The
+/// distance and the load of the scene are not used. For unlike bodies the pressures displace the surfaces sideways, but here tractions do not change
+/// the pressures. With adhesion the pressures are contact pressures q.
 pub fn solve_tangential(
     scene: &Scene<'_>,
     pressure: &[f64],
@@ -89,12 +91,12 @@ pub fn solve_tangential(
     let threads = Threads::new(options.threads)?;
     let mut tangent = Tangent::new(scene, options, &threads)?;
     let turn = Turn { scene, friction, options, threads: &threads };
-    let (outcome, report) = alone(&mut tangent, &turn, pressure, progress)?;
+    let (outcome, report) = solve_alone(&mut tangent, &turn, pressure, progress)?;
     Ok((outcome, tangent.into_solution(), report))
 }
 
-/// One step with given pressures.
-fn alone(
+/// Solves one step with given pressures, and keeps them for the next step.
+fn solve_alone(
     tangent: &mut Tangent,
     turn: &Turn<'_>,
     pressure: &[f64],
@@ -114,7 +116,7 @@ fn alone(
     Ok((outcome, Report { measures, friction, tolerance, solve_seconds, ..Report::default() }))
 }
 
-/// The pressures with negative ones set to 0. Refuses all but one finite value per element.
+/// Returns the pressures with negative ones set to 0. Refuses arrays that have not one finite value per element.
 pub(super) fn positive<'a>(grid: &Grid, pressure: &'a [f64]) -> Result<Cow<'a, [f64]>> {
     finite(grid, pressure)?;
     if pressure.iter().all(|p| *p >= 0.0) {
@@ -125,12 +127,12 @@ pub(super) fn positive<'a>(grid: &Grid, pressure: &'a [f64]) -> Result<Cow<'a, [
     Ok(Cow::Owned(positive))
 }
 
-/// Refuses pressures that are not one finite value per element.
+/// Refuses arrays of pressures that have not one finite value per element.
 pub(super) fn finite(grid: &Grid, pressure: &[f64]) -> Result<()> {
     check_values("pressure", pressure, grid, error::finite)
 }
 
-/// The measures of given pressures.
+/// Force, largest pressure and number of elements in contact of given pressures. The other measures are 0.
 pub(super) fn measures(grid: &Grid, pressure: &[f64]) -> Measures {
     let pressing = || pressure.iter().filter(|p| **p > 0.0);
     Measures {

@@ -1,30 +1,32 @@
-//! Estimated errors of the tangential forces, from a solve from rest on one grid.
+//! Estimates of the discretisation errors of tangential forces, from one grid. A shift must start from rest.
 //!
-//! *Shift.* With a parabola's pressures the force of a shift is the difference of two normal forces, that on C and that on the stick area
-//! (Jager 1997; Ciavarella 1998). The approaches of both have an error of the same part of the bend of h within an element ([`estimates`]),
-//! so that most of it cancels. The error from the outline of the contact remains, which is larger with fewer elements across:
+//! *Shift.* For a paraboloid, the force of a shift is the difference of two normal forces: that on C and that on the stick area (Jager 1997;
+//! Ciavarella 1998). The approaches of both have an error of the same part of the bend of h ([`estimates`]), so most of the error cancels. What
+//! remains is the error from the outline of the contact, which is larger with fewer elements across:
 //!
 //! ```text
 //! e = SHIFT_ERROR bend/depth (1 + (OUTLINE_CHORD/elements across)^2) mu N
 //! ```
 //!
-//! *Steady rolling* is of first order in the step: the difference to the next coarser grid of the nested iteration, with these pressures, is
-//! about the error (with spin half of it), `e = ROLLING_FACTOR |F - F_coarse|`, plus a part of the above.
+//! *Steady rolling.* The error is of first order in the step. Let F_coarse be the force on the next coarser grid of the nested iteration, with the
+//! same pressures. The error is about `|F - F_coarse|`, with spin up to twice that. The estimate is `ROLLING_FACTOR |F - F_coarse|`, plus the error
+//! of a shift times ROLLING_FACTOR.
 //!
-//! *With a given approach* the error e_N of the normal force adds to the tangential one: `mu e_N` in full slip, else less,
-//! `mu e_N (1 - (1 - F/(mu N))^(1/3))` with a parabola's pressures. Jumps of the surface, as those of punches, add `F/N` times their part of e_N.
+//! *Given approach.* The error e_N of the normal force adds an error to the tangential force: `mu e_N` in full slip, and
+//! `mu e_N (1 - (1 - F/(mu N))^(1/3))` for a paraboloid otherwise. Jumps of the surface, such as those of punches, add `F/N` times their part of e_N.
 //!
-//! *Where the surface ends within the contact*, or coefficients jump ([`at_ends`]), tractions are singular like pressures, and the error of the
-//! force is that of the normal one with the traction in place of the pressure. If the normal force is given, this part goes to 0 towards full
-//! slip.
+//! *Ends of the surface within the contact, and jumps of the coefficients* ([`at_ends`]). Tractions are singular there like pressures. The error of
+//! the tangential force is that of the normal force, with the traction in place of one of the two factors p. If the normal force is given, this error
+//! tends to 0 towards full slip.
 //!
-//! *Where mu jumps* the jump lies anywhere between two centres, and with it that of `mu p` on slip ([`at_jumps`]).
+//! *Jumps of mu.* A jump of mu lies anywhere between two centres, and so does the jump of `mu p` where elements slip ([`at_jumps`]).
 //!
-//! With a prescribed force the creepage has the error `e/(dF/dxi)`, with `dF/dxi = (F/xi) (1 - F/(mu N))^(1/3)`, which
-//! is that of Cattaneo's and of Carter's curve or less. A residual R adds an error of at most R mu N
-//! (docs/friction.md). SHIFT_ERROR, OUTLINE_CHORD and ROLLING_FACTOR are measured on balls and ellipses of 7 to 54
-//! elements across (docs/notes/2026-11-friction.md) and tested (`tests/friction/estimates.rs`). They hold for flat
-//! punches and jumps of mu on 11 to 68 elements across.
+//! *Given tangential force.* The creepage has the error `e/(dF/dxi)`. The slope is taken as `dF/dxi = (F/xi) (1 - F/(mu N))^(1/3)`, which is at most
+//! that of Cattaneo's and of Carter's solutions.
+//!
+//! A residual R adds an error of at most R mu N (docs/friction.md). SHIFT_ERROR, OUTLINE_CHORD and ROLLING_FACTOR were measured on balls and ellipses
+//! with 7 to 54 elements across (docs/notes/2026-11-friction.md; tests/friction/estimates.rs). They also suffice for flat punches and jumps of mu on
+//! 11 to 68 elements across.
 //!
 //! [`estimates`]: super::estimates
 
@@ -36,46 +38,54 @@ use crate::rectangle::Rectangle;
 use crate::scene::{Friction, Load, Motion, Prescribed};
 use crate::sums::in_blocks;
 
-/// Relative error of the force of a shift, over the bend relative to the depth.
+/// Error of the force of a shift relative to mu N, over the bend relative to the approach above the lowest h ([`Curvature::depth`]).
 const SHIFT_ERROR: f64 = 0.3;
-/// Elements across at which the outline's error equals the rest.
+/// Elements across the contact at which the error from the outline equals the other error of a shift.
 const OUTLINE_CHORD: f64 = 13.0;
-/// Factors in steady rolling: on the difference to the coarser grid and on the error of a shift, on the difference in the other direction.
+/// Factor in steady rolling, on the difference from the coarser grid and on the error of a shift.
 const ROLLING_FACTOR: f64 = 3.0;
+/// The error in one direction is at least this part of the corresponding error in the other direction.
 const ACROSS_FACTOR: f64 = 0.25;
-/// Factor for shifts of unlike bodies, measured up to 3.4 times the estimate: pressures displace sideways, so force and creepage do not
-/// vanish together.
+/// Factor on the error of a shift for unlike bodies; errors were up to 3.4 times the estimate without it. Pressures displace the surfaces sideways,
+/// so the force is not 0 at a creepage of 0.
 const UNLIKE_FACTOR: f64 = 8.0;
-/// Factor for shifts of coated bodies, measured up to 1.5 times the estimate: neither parabola nor half-space.
+/// Factor on the error of a shift for coated bodies; errors were up to 1.5 times the estimate without it. The theory above is that of paraboloids on
+/// half-spaces.
 const COATED_FACTOR: f64 = 2.0;
-/// With a given normal force, the factor on errors at ends is this times `(1 - F/(mu N))^(1/3)`, at most 1.
+/// With a given normal force, the factor on errors from ends is this times `(1 - F/(mu N))^(1/3)`, at most 1.
 const BEFORE_SLIP: f64 = 2.0;
 
-/// Errors are parts of mu N, or of this factor times the sum of the tractions if that is less: tractions of glued elements do not reach their bounds,
-/// and are linear in the motion.
+/// Errors are relative to mu N, or to this factor times the sum of the tractions if that is less. With very large mu elements are stuck as if glued:
+/// their tractions do not come near their bounds and are linear in the motion.
 const WITHIN_REACH: f64 = 50.0;
-/// Factor on second differences of directions in a shift with spin; 1/24 is that of a smooth integrand. Errors were up to .7 times this.
+/// Factor on the second differences of the directions of tractions, in a shift with spin. That of a smooth integrand is 1/24. Errors were up to .7
+/// times the estimate.
 const TURN_FACTOR: f64 = 0.0625;
 
 /// A solved scene with friction.
 pub struct Solved<'a> {
-    /// The normal problem, its state and its outline.
+    /// The normal problem.
     pub problem: &'a Problem,
+    /// The solution of the normal problem.
     pub state: &'a State,
+    /// The outline of the contact area.
     pub outline: &'a Outline,
-    /// Its curvature, and the parts of its error.
+    /// The curvature of the surface and of the pressures.
     pub curvature: &'a Curvature,
+    /// The parts of the error of the normal force or approach; None if unknown.
     pub parts: Option<Parts>,
+    /// The friction of the scene.
     pub friction: &'a Friction<'a>,
-    /// Tractions and slip.
+    /// The solution of the tangential problem.
     pub solution: &'a Solution,
-    /// Whether the bodies are alike.
+    /// Whether tractions do not change the pressures.
     pub alike: bool,
     /// Whether the bodies have a coating.
     pub coated: bool,
 }
 
-/// Errors of the tangential force in each direction, or of the creepage where the force is prescribed; none: not known.
+/// Estimates the error of the tangential force in x and in y, or of the creepage where the force is prescribed. None: unknown. `found` is the report
+/// of the tangential problem.
 pub fn estimate(solved: &Solved<'_>, found: &Report) -> [Option<f64>; 2] {
     let unknown = [None; 2];
     let &Solved { state, outline, curvature, friction, alike, coated, .. } = solved;
@@ -92,43 +102,46 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> [Option<f64>; 2] {
     let hidden = found.certificate.residual * carried;
     let force = found.force[0].hypot(found.force[1]);
     let creepage = found.creepage[0].hypot(found.creepage[1]);
-    // (1 - F/(mu N))^(1/3)
+    // (1 - F/(mu N))^(1/3): the radius of the stick area over that of the contact, for a ball.
     let stuck = (1.0 - force / found.carried).max(f64::EPSILON).cbrt();
     // dxi/dF
     let compliance = creepage / force / stuck;
-    let differences = match (friction.motion, found.coarser) {
+    // The differences of forces, and of creepages where forces are given, from those of the coarser grid.
+    let [of_forces, of_creepages] = match (friction.motion, found.coarser) {
         (Motion::Shift, _) if found.from_rest => [[0.0; 2]; 2],
         (Motion::SteadyRolling, Some((force, creepage))) if alike => {
-            let is_found = friction.has_forces();
-            let of_creepage = |k: usize| if is_found[k] { (found.creepage[k] - creepage[k]).abs() } else { 0.0 };
+            let has_force = friction.has_forces();
+            let of_creepage = |k: usize| if has_force[k] { (found.creepage[k] - creepage[k]).abs() } else { 0.0 };
             [[0, 1].map(|k| (found.force[k] - force[k]).abs()), [0, 1].map(of_creepage)]
         }
         _ => return unknown,
     };
-    let part = match friction.motion {
+    let factor = match friction.motion {
         Motion::Shift if coated => COATED_FACTOR,
         Motion::Shift if alike => 1.0,
         Motion::Shift => UNLIKE_FACTOR,
         _ => ROLLING_FACTOR,
     };
     let ends = solved.ends(&parts, stuck);
-    // A punch has F/(mu N) of it; a parabola 1 - (1 - F/(mu N))^(1/3), here without cancellation.
+    // The parts of mu e_N, for the error from jumps (punches): F/(mu N), and for that from the bend (paraboloids): 1 - (1 - F/(mu N))^(1/3), here
+    // written without cancellation.
     let of_jumps = force / found.carried;
     let slipped = [of_jumps, of_jumps / (1.0 + stuck + stuck * stuck)];
     let more = solved.by_the_normal_force(&parts, found.carried, slipped) + solved.jumps() + solved.turns();
     [0, 1].map(|k| {
         let at_least = |of: Vector| of[k].max(ACROSS_FACTOR * of[1 - k]);
-        let of_surface = part * of_shift + at_least(ends) + more;
+        let of_surface = factor * of_shift + at_least(ends) + more;
         let error = match friction.prescribed[k] {
-            Prescribed::Creepage(_) => ROLLING_FACTOR * at_least(differences[0]) + of_surface + hidden,
-            Prescribed::Force(_) => ROLLING_FACTOR * at_least(differences[1]) + (of_surface + hidden) * compliance,
+            Prescribed::Creepage(_) => ROLLING_FACTOR * at_least(of_forces) + of_surface + hidden,
+            Prescribed::Force(_) => ROLLING_FACTOR * at_least(of_creepages) + (of_surface + hidden) * compliance,
         };
         error.is_finite().then_some(error)
     })
 }
 
-/// Whether the law of friction, if there is one, allows an estimate: of a shift by creepages. Near the largest force of a falling coefficient errors
-/// of the creepage were up to 1.5 times the estimate. In steady rolling no coarser grid is solved with the law.
+/// Whether errors can be estimated with the friction law, if there is one. They can for a shift with given creepages. With given forces they cannot:
+/// near the largest force of a falling coefficient, errors of the creepage were up to 1.5 times the estimate. In steady rolling they cannot either,
+/// because no coarser grid is solved with the law.
 fn is_known_with_law(friction: &Friction<'_>) -> bool {
     let by_creepages = friction.has_forces() == [false; 2];
     !friction.has_law() || friction.motion == Motion::Shift && by_creepages
@@ -140,21 +153,22 @@ impl Solved<'_> {
         in_blocks(self.solution.traction.iter().map(|q| q[0].hypot(q[1]))) * self.state.grid.element_area()
     }
 
-    /// The error from ends of the surface, in each direction. `stuck`: `(1 - F/(mu N))^(1/3)`.
+    /// The error from ends of the surface and jumps of the coefficients, in each direction. `stuck` is `(1 - F/(mu N))^(1/3)`.
     fn ends(&self, parts: &Parts, stuck: f64) -> Vector {
         if parts.ends == 0.0 {
             return [0.0; 2];
         }
         let Solved { problem, state, friction, solution, .. } = self;
         let sums = at_ends(problem, state, |i| solution.traction[i].map(f64::abs));
-        let of_rest = match (state.load, friction.coefficient) {
+        let factor = match (state.load, friction.coefficient) {
             (Load::Force(_), Coefficient::Uniform(_)) => (BEFORE_SLIP * stuck).min(1.0),
             _ => 1.0,
         };
-        sums.map(|sum| of_rest * sum * parts.stiffness / state.force())
+        sums.map(|sum| factor * sum * parts.stiffness / state.force())
     }
 
-    /// In full slip mu times the error of the normal force, else parts of the errors by jumps and by the bend.
+    /// The error of the tangential force that the error of the normal force causes: `carried` (mu N) over N, times the parts `of_jumps` and
+    /// `of_smooth` of the normal force's errors from jumps and from the bend.
     fn by_the_normal_force(&self, parts: &Parts, carried: f64, [of_jumps, of_smooth]: [f64; 2]) -> f64 {
         let of_normal = match self.state.load {
             Load::Force(_) => of_jumps * parts.jumps * parts.stiffness,
@@ -163,7 +177,7 @@ impl Solved<'_> {
         of_normal * carried / self.state.force()
     }
 
-    /// The error of a shift with spin: from the place that does not move, around which tractions turn within an element or two.
+    /// The error of a shift with spin that comes from the pole of the motion, around which the tractions rotate within an element or two.
     fn turns(&self) -> f64 {
         let Solved { state, friction, solution, .. } = self;
         if friction.motion != Motion::Shift || friction.spin == 0.0 {
@@ -172,8 +186,8 @@ impl Solved<'_> {
         let (grid, p) = (&state.grid, &state.p);
         let bound = |i: usize| friction.coefficient.at(i) * p[i];
         let slips = |i: usize| solution.stick_slip[i] == SLIP && bound(i) > 0.0;
-        let turn = |i: usize, (at, last): (usize, usize), step: usize| {
-            if at == 0 || at == last || bound(i) <= 0.0 || !slips(i - step) || !slips(i + step) {
+        let turn = |i: usize, (number, last): (usize, usize), step: usize| {
+            if number == 0 || number == last || bound(i) <= 0.0 || !slips(i - step) || !slips(i + step) {
                 return 0.0;
             }
             let [a, b, c] = [i - step, i, i + step].map(|j| solution.traction[j].map(|q| q / bound(j)));

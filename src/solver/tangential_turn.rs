@@ -1,4 +1,5 @@
-//! The tangential problem of a step, [coupled](Coupled) with the normal problem.
+//! The tangential problem of a step as a problem that is [coupled](Coupled) with the normal one. The tangential problem of a turn has either the
+//! given forces ("by force"), or creepages held in their place (module [`by_creepages`](super::by_creepages)).
 
 use super::tangential::{Tangent, Turn};
 use super::{Options, Outcome};
@@ -9,36 +10,36 @@ use crate::friction::{length, Report, Start, Vector};
 use crate::progress::Monitor;
 use crate::scene::Prescribed;
 
-/// The solver of the tangential problem, and the results so far.
+/// The tangential problem of a step, and its results so far.
 pub struct TangentialTurn<'a> {
-    /// The solver.
+    /// The solver of the tangential problem.
     pub tangent: &'a mut Tangent,
-    /// The step.
+    /// The inputs that are the same in all turns.
     pub turn: Turn<'a>,
-    /// The report of the last solve, with the products and seconds of all.
+    /// The report of the last solve, but with products and seconds of all solves of the step. None before the first.
     pub found: Option<Report>,
-    /// Creepages, times the length rolled, that turns hold instead of the given forces.
+    /// Creepages times the length rolled that replace the given forces, if turns hold creepages.
     pub held: Option<Vector>,
-    /// Most products of a turn.
+    /// Most products of one solve.
     pub most: usize,
-    /// Whether turns by force may be followed by turns with creepages.
+    /// Whether the turns are by force, and turns with held creepages may follow.
     pub by_force: bool,
-    /// Why the last pressures do not carry the given forces.
+    /// The error that says why the last pressures do not carry the given forces; None if they do.
     refusal: Option<Error>,
 }
 
 /// Residuals below this are round-off.
 pub const ROUND_OFF: f64 = 1e-11;
-/// Turns by a force above NEAR_FULL_SLIP times mu N get BY_FORCE_SHARE of the products, so that turns with creepages
-/// can follow.
+/// If the given force exceeds this part of mu N, turns with held creepages may be needed.
 const NEAR_FULL_SLIP: f64 = 0.8;
+/// The part of the products that turns by force then get; the rest is for turns with held creepages.
 const BY_FORCE_SHARE: f64 = 0.6;
-/// Tolerance of turns with creepages, relative to the options'. It is tighter, because the forces of two turns are
-/// compared. Its least value is round-off.
+/// Tolerance of turns with held creepages, relative to that of the options. It is smaller, because forces of two series of turns are compared.
 const CREEPAGES_TOLERANCE: f64 = 0.1;
+/// The least such tolerance: smaller ones are below round-off.
 const LEAST_TOLERANCE: f64 = 1e-13;
 
-/// Options of turns with creepages.
+/// Options of turns with held creepages.
 pub fn sharper(options: &Options) -> Options {
     Options {
         tolerance: (CREEPAGES_TOLERANCE * options.tolerance).max(LEAST_TOLERANCE.min(options.tolerance)),
@@ -47,28 +48,28 @@ pub fn sharper(options: &Options) -> Options {
 }
 
 impl<'a> TangentialTurn<'a> {
-    /// The tangential problem before its first solve.
+    /// The tangential problem of a step, before its first solve.
     pub fn new(tangent: &'a mut Tangent, turn: Turn<'a>) -> TangentialTurn<'a> {
         let by_force = turn.friction.has_forces() != [false; 2];
-        // Tolerances below round-off gain nothing.
+        // Held creepages do not help if the tolerance is below round-off.
         let is_attainable = turn.options.tolerance >= LEAST_TOLERANCE;
         let by_force = by_force && is_attainable && !tangent.is_of_like_bodies() && !turn.friction.has_law();
         TangentialTurn { tangent, turn, found: None, held: None, most: usize::MAX, by_force, refusal: None }
     }
 
-    /// The products that remain of `max_cycles`.
+    /// The number of products that remain of `max_cycles` for the present kind of turns.
     fn left(&self) -> usize {
         let done = self.found.as_ref().map_or(0, |found| found.products as usize);
         let share = if self.is_near() { BY_FORCE_SHARE } else { 1.0 };
         ((share * self.turn.options.max_cycles as f64).ceil() as usize).saturating_sub(done)
     }
 
-    /// The excess of the last forces over the given ones, and the creepages, times the length rolled.
+    /// The last forces less the given ones, and the creepages of the last solve times the length rolled. None before the first solve.
     pub fn excess(&self) -> Option<(Vector, Vector)> {
         Some(self.tangent.excess(self.turn.friction, self.found.as_ref()?))
     }
 
-    /// Whether turns are by a force at which nearly all of C slips.
+    /// Whether the turns are by force and the force exceeds [`NEAR_FULL_SLIP`] times mu N, so that nearly all of C slips.
     pub fn is_near(&self) -> bool {
         let wanted = length(self.wanted());
         self.by_force && self.found.as_ref().is_some_and(|found| wanted > NEAR_FULL_SLIP * found.carried)
@@ -84,17 +85,18 @@ impl<'a> TangentialTurn<'a> {
         self.refusal.is_some()
     }
 
-    /// Removes the refusal and returns it.
+    /// Removes and returns the error that says why the last pressures do not carry the given forces.
     pub fn take_refusal(&mut self) -> Option<Error> {
         self.refusal.take()
     }
 
-    /// Sets the refusal.
+    /// Sets the error that [`refuse`](Coupled::refuse) returns after the last turn; None: no error.
     pub fn refuse_by(&mut self, refusal: Option<Error>) {
         self.refusal = refusal;
     }
 
-    /// The refusal with the largest force of the creepages searched, which exceeds the given one by `excess` times mu N.
+    /// Writes the largest force of all creepages that were tried into the message of `refusal`. `excess` is that force less the given one, relative
+    /// to mu N.
     pub fn with_largest(&self, refusal: Error, excess: Option<f64>) -> Error {
         let carried = self.found.as_ref().map_or(0.0, |found| found.carried);
         let wanted = length(self.wanted());
@@ -122,12 +124,12 @@ impl<'a> TangentialTurn<'a> {
         slips.fold(0.0, |largest: f64, slip| largest.max(length(*slip)))
     }
 
-    /// The displacement by the tractions of full slip at the pressures of the last result.
+    /// The displacement by the tractions of full slip with the pressures of the last result.
     pub fn full_displacement(&self) -> f64 {
         self.tangent.full_displacement()
     }
 
-    /// Accepts forces that differ from the given ones by `missing`, within the tolerance.
+    /// Accepts the last forces, which differ from the given ones by `missing` times mu N, less than the tolerance.
     pub fn accept(&mut self, missing: f64) {
         self.refusal = None;
         self.found.iter_mut().for_each(|found| found.missing = missing);
@@ -145,13 +147,14 @@ impl Coupled for TangentialTurn<'_> {
             None => turn.start(),
         };
         let (ended, mut found, refusal) = self.tangent.solve_after(outcome, &turn, &state.p, start, monitor)?;
-        // Pressures of an unsolved normal problem refuse nothing.
+        // Pressures of a normal problem that did not converge prove nothing about the forces.
         self.refusal = refusal.filter(|_| outcome == Outcome::Converged);
         if let Some(before) = &self.found {
             (found.products, found.seconds) = (found.products + before.products, found.seconds + before.seconds);
         }
         self.found = Some(found);
-        // Refused tractions only serve to find the next pressures: the turn counts as converged.
+        // If the pressures do not carry the forces, the tractions only serve to find the next pressures. The turn counts as converged, so that the
+        // turns go on.
         Ok(if self.refusal.is_some() && ended != Outcome::Cancelled { Outcome::Converged } else { ended })
     }
 

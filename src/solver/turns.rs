@@ -1,5 +1,5 @@
-//! The problems coupled with the normal one. Problems that displace the undeformed distance are solved in turns with it. The others are
-//! solved once, with its pressures.
+//! The problems coupled with the normal problem. Those that displace the undeformed distance are solved in turns with the normal problem. The others
+//! are solved once, with the pressures of the normal problem.
 
 use super::beside::Distances;
 use super::extrapolation::Extrapolation;
@@ -12,16 +12,16 @@ use crate::error::Result;
 use crate::progress::{Monitor, Outcome};
 use crate::scene::Scene;
 
-/// Most turns. For unlike bodies each turn reduces the change of the distance by a factor of 4 to 30.
+/// Most turns of one series. For unlike bodies the change of the distance decreases by a factor of 4 to 30 in each turn.
 const MOST_TURNS: u32 = 50;
 
-/// The problems coupled with a normal one.
+/// The problems coupled with a normal problem.
 pub struct Turns<'a> {
-    /// The tangential problem.
+    /// The tangential problem, if the scene has friction.
     pub friction: Option<TangentialTurn<'a>>,
     /// The problems of other effects.
     pub others: Vec<Box<dyn Coupled + 'a>>,
-    /// The displacements by all problems.
+    /// The undeformed distance without and with the displacements by these problems.
     pub distances: &'a mut Distances,
 }
 
@@ -32,18 +32,18 @@ impl<'a> Turns<'a> {
         self.others.iter_mut().map(|coupled| &mut **coupled).chain(friction)
     }
 
-    /// The problems that displace the distance, or those that do not.
-    fn that(&mut self, displace: bool) -> impl Iterator<Item = &mut (dyn Coupled + 'a)> {
+    /// The problems that displace the undeformed distance (`displace`), or those that do not.
+    fn those(&mut self, displace: bool) -> impl Iterator<Item = &mut (dyn Coupled + 'a)> {
         self.all().filter(move |coupled| coupled.displaces() == displace)
     }
 
-    /// Whether any problem displaces the distance, so that turns are needed.
-    pub fn displace(&mut self) -> bool {
-        self.that(true).next().is_some()
+    /// Whether any problem displaces the undeformed distance, so that turns are needed.
+    pub fn any_displaces(&mut self) -> bool {
+        self.those(true).next().is_some()
     }
 
-    /// Solves the problems that displace, or those that do not, with the pressures of a normal problem that ended with `outcome`. Returns the worst
-    /// outcome.
+    /// Solves the problems that displace the undeformed distance (`displace`), or those that do not. `state` has the pressures of the normal problem,
+    /// which ended with `outcome`. Returns `outcome`, or that of the first coupled problem that did not converge.
     pub(super) fn solve(
         &mut self,
         displace: bool,
@@ -51,19 +51,19 @@ impl<'a> Turns<'a> {
         state: &State,
         monitor: &mut Monitor<'_>,
     ) -> Result<Outcome> {
-        self.that(displace)
-            .try_fold(outcome, |so_far, coupled| Ok(worse(so_far, coupled.solve(outcome, state, monitor)?)))
+        self.those(displace)
+            .try_fold(outcome, |so_far, coupled| Ok(first_failure(so_far, coupled.solve(outcome, state, monitor)?)))
     }
 
-    /// The undeformed distance with all displacements, and its change where pressures act (in C and at a limit), as rms relative to
-    /// `h - approach`. None: no change on the whole grid.
+    /// Computes the undeformed distance plus the displacements by all coupled problems. Also returns its change from the distance in `state`: the rms
+    /// over the elements in contact, relative to the rms of `h - approach` there. None: the distance does not change anywhere.
     pub(super) fn distance(&mut self, state: &State) -> (&[f64], Option<f64>) {
-        let (own, mut displaced) = (&self.distances.own, std::mem::take(&mut self.distances.displaced));
-        displaced.copy_from_slice(own);
-        self.that(true).for_each(|coupled| coupled.displace(&mut displaced));
+        let mut displaced = std::mem::take(&mut self.distances.displaced);
+        displaced.copy_from_slice(&self.distances.undisplaced);
+        self.those(true).for_each(|coupled| coupled.displace(&mut displaced));
         let (mut changes, mut distances, mut differs) = (0.0, 0.0, false);
         for (i, displaced) in displaced.iter().enumerate() {
-            // A single loaded element displaces others but not itself, so h may differ outside C only.
+            // The change may be 0 in contact and not elsewhere: the tractions of a single element displace other elements, but not itself.
             differs |= *displaced != state.h[i];
             if state.touches(i) {
                 changes += (displaced - state.h[i]).powi(2);
@@ -76,19 +76,19 @@ impl<'a> Turns<'a> {
     }
 }
 
-/// The solve of a scene in turns.
+/// The solve of a scene with coupled problems.
 pub(super) struct InTurns<'s, 't, 'm> {
     pub(super) solver: &'s mut Solver,
     pub(super) turns: &'s mut Turns<'t>,
     pub(super) scene: &'s Scene<'s>,
     pub(super) options: &'s Options,
     pub(super) monitor: &'s mut Monitor<'m>,
-    /// Cycles of the normal problem in all turns, without those of its first solve.
+    /// Cycles of the normal problem in all turns; those of its solve before the first turn do not count.
     cycles: usize,
 }
 
 impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
-    /// The turns of a scene whose normal problem is solved.
+    /// The coupled problems of a scene whose normal problem is solved once.
     pub(super) fn new(
         solver: &'s mut Solver,
         turns: &'s mut Turns<'t>,
@@ -98,15 +98,15 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
         InTurns { solver, turns, scene, options, monitor, cycles: 0 }
     }
 
-    /// Solves all problems that displace the undeformed distance in turns with the normal one, until the certificate of the normal problem holds
-    /// with the last displacements (Panagiotopoulos 1975). Then solves the problems that displace nothing. The normal problem ended with `outcome`.
+    /// Solves the problems that displace the undeformed distance in turns with the normal problem (Panagiotopoulos 1975), until the certificate of
+    /// the normal problem holds with the last displacements. Then solves the other problems. The normal problem ended with `outcome`.
     pub(super) fn solve(mut self, outcome: Outcome) -> Result<Outcome> {
         if self.options.initial_guess != InitialGuess::Previous {
-            // Each turn starts from the one before, not from earlier solves.
+            // Each turn starts from the turn before. Solutions of earlier solves must not affect the bits.
             self.solver.methods.projected_cg.forget_solutions();
         }
-        let outcome = match self.turns.displace() {
-            true => self.meet(outcome)?,
+        let outcome = match self.turns.any_displaces() {
+            true => self.solve_in_turns(outcome)?,
             false => outcome,
         };
         let outcome = self.turns.solve(false, outcome, &self.solver.state, self.monitor)?;
@@ -114,15 +114,15 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
         Ok(outcome)
     }
 
-    /// The turns with the problems that displace.
-    fn meet(&mut self, outcome: Outcome) -> Result<Outcome> {
+    /// Makes turns with the problems that displace the undeformed distance: first by force, then with held creepages if needed.
+    fn solve_in_turns(&mut self, outcome: Outcome) -> Result<Outcome> {
         self.turns.distances.take(&self.solver.state.h)?;
         let outcome = self.turn_about(self.options, (outcome, true))?;
         self.meet_by_creepages(outcome)
     }
 
-    /// One series of turns, by force or with held creepages. The normal problem ended with `outcome`; `is_met` tells whether it was solved with the
-    /// distances of the state.
+    /// Makes one series of turns, by force or with held creepages. The normal problem ended with `outcome`. `is_met` tells whether it was solved with
+    /// the distance in the state; if not, its certificate is checked even if the distance does not change.
     pub(super) fn turn_about(&mut self, options: &Options, (mut outcome, is_met): (Outcome, bool)) -> Result<Outcome> {
         let again = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*options };
         let mut extrapolation = Extrapolation::default();
@@ -130,7 +130,7 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
             let InTurns { solver, turns, .. } = self;
             let so_far = turns.solve(true, outcome, &solver.state, self.monitor)?;
             let (distance, change) = turns.distance(&solver.state);
-            // Without a change the normal problem stays solved.
+            // If the distance does not change, the certificate of the normal problem still holds.
             let Some(change) = change.or((solved == 0 && !is_met).then_some(0.0)) else { return Ok(so_far) };
             extrapolation.turn(&solver.state.h, distance)?;
             let holds = solver.holds_with((distance, change), (self.scene, options), self.monitor);
@@ -140,9 +140,9 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
             if solved == MOST_TURNS {
                 break;
             }
-            // The caller's limit bounds the cycles of the first solve, and again those of all turns together.
+            // `max_cycles` bounds the cycles of the first solve, and once more those of all turns together.
             let left = options.max_cycles.saturating_sub(self.cycles);
-            if left == 0 || !turns.that(true).all(|coupled| coupled.has_work_left()) {
+            if left == 0 || !turns.those(true).all(|coupled| coupled.has_work_left()) {
                 return Ok(Outcome::IterationLimit);
             }
             extrapolation.extrapolate(&mut turns.distances.displaced);
@@ -152,7 +152,7 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
         Ok(Outcome::Stagnated)
     }
 
-    /// Solves the normal problem again with the displaced distance.
+    /// Solves the normal problem again, with the displaced distance.
     fn solve_displaced(&mut self, options: &Options) -> Result<Outcome> {
         let InTurns { solver, monitor, .. } = self;
         monitor.ledger.rows.pop();
@@ -168,7 +168,8 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
 }
 
 impl Solver {
-    /// Makes and reports the certificate of the normal problem with the last distance, which changed by `change`. Returns whether it holds.
+    /// Surveys the last pressures with another distance, which differs by the relative `change`, and replaces the last row of the ledger. Returns
+    /// whether the criterion holds.
     pub(super) fn holds_with(
         &mut self,
         (distance, change): (&[f64], f64),
@@ -194,8 +195,8 @@ impl Solver {
     }
 }
 
-/// The worse outcome of two solves.
-fn worse(one: Outcome, other: Outcome) -> Outcome {
+/// The first outcome that is not Converged.
+fn first_failure(one: Outcome, other: Outcome) -> Outcome {
     if one == Outcome::Converged {
         other
     } else {

@@ -1,4 +1,5 @@
-//! The coupling of the normal and the tangential problem of unlike bodies, on one grid: see [`Coupling`].
+//! The coupling of the normal and the tangential problem of unlike bodies: pressures displace the surfaces sideways, tractions displace them along
+//! the normal. [`Coupling`] has the products.
 
 use crate::effects::{Friction, Motion, Previous};
 use crate::error::Result;
@@ -7,28 +8,32 @@ use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::threads::Threads;
 
-/// The name of this memory in messages.
+/// The name of these arrays in messages.
 const FIELDS: &str = "the coupling of unlike bodies";
 
-/// The products of the coupling, and their displacements.
+/// The products of the coupling, and the displacements that they give.
 pub struct UnlikeBodies {
+    /// The coefficients of the coupling.
     source: Source,
+    /// The product at the centres of the elements.
     here: Coupling,
-    /// In rolling: the offset in elements of the places before the step, and the product there.
+    /// In rolling, the product at the places of the particles before the step, and the offset of these places in elements.
     there: Option<((f64, f64), Coupling)>,
+    /// The last sideways displacements.
     sideways: Vec<Vector>,
+    /// The last displacements along the normal.
     along_normal: Vec<f64>,
-    /// Pressures of the last step.
+    /// The pressures at the end of the last step.
     last_pressure: Vec<f64>,
 }
 
-/// The pressures before a step.
+/// Which pressures acted before a step.
 enum Before {
-    /// None: from rest.
+    /// None: the step starts from rest.
     None,
-    /// The present ones: in steady rolling, and with given tractions.
+    /// The same as in the step: in steady rolling, and if the caller gives the previous tractions.
     Same,
-    /// The pressures of the last result.
+    /// Those at the end of the last step.
     Last,
 }
 
@@ -43,7 +48,7 @@ impl Before {
 }
 
 impl UnlikeBodies {
-    /// The coupling on a grid.
+    /// Sets up the coupling on a grid.
     pub fn new(grid: &Grid, source: Source, threads: &Threads) -> Result<UnlikeBodies> {
         let n = grid.len();
         Ok(UnlikeBodies {
@@ -56,7 +61,7 @@ impl UnlikeBodies {
         })
     }
 
-    /// Takes the last pressures of another one.
+    /// Takes over the pressures of the last step from a coupling with other coefficients.
     pub fn take_last_of(&mut self, other: &mut UnlikeBodies) {
         std::mem::swap(&mut self.last_pressure, &mut other.last_pressure);
     }
@@ -78,8 +83,8 @@ impl UnlikeBodies {
         &self.sideways
     }
 
-    /// Computes the sideways displacements by pressures p, less those before the step. The latter are 0 from rest. In steady rolling and with given
-    /// previous tractions they are those by p as well.
+    /// Computes how far the surfaces are displaced sideways in a step: the displacements by pressures p, less those by the pressures before the step.
+    /// In rolling the latter are taken at the places of the particles before the step.
     pub fn displace_sideways(
         &mut self,
         grid: &Grid,
@@ -108,10 +113,10 @@ impl UnlikeBodies {
         Ok(())
     }
 
-    /// Adds the change of the last [sideways displacements](UnlikeBodies::displace_sideways) by a change dp of the pressures.
+    /// Adds to `to` the change of the [sideways displacements](UnlikeBodies::displace_sideways) if the pressures of the step change by dp.
     pub fn add_change(&mut self, friction: &Friction<'_>, dp: &[f64], to: &mut [Vector]) {
         match (Before::of(friction), friction.motion) {
-            // The changes before and after the step cancel.
+            // The pressures before the step change by dp as well, so both changes cancel.
             (Before::Same, Motion::Shift) => {}
             (Before::Same, _) => {
                 self.here.add_sideways(dp, 1.0, to);
@@ -123,7 +128,7 @@ impl UnlikeBodies {
         }
     }
 
-    /// The displacements along the normal by tractions.
+    /// Writes the displacements along the normal by tractions to `to`.
     pub fn along_normal(&mut self, traction: &[Vector], to: &mut [f64]) {
         self.here.along_normal(traction, to);
     }

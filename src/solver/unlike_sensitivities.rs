@@ -1,16 +1,19 @@
-//! Derivatives of the tangential forces of unlike bodies by the creepages and the spin: both problems, linearised.
+//! Derivatives of the tangential forces of unlike bodies by the creepages and the spin, from the linearised normal and tangential problems.
 //!
-//! At fixed C and slip area, with the load given, a change dw of the rigid slip changes tractions and pressures by
+//! The contact area C, the slip area and the load are fixed. A change dw of the rigid slip changes tractions and pressures by dq and dp:
 //!
 //! ```text
-//! (P A P + D) z = -P (dw + T dp + A mu dp n),    dq = z + mu dp n     on slip q follows its bound
-//! Azz dp + L dq - d = 0 on C,    dp = 0 elsewhere, at a limit too       d = 0 with an approach given; else sum dp = 0
+//! (P A P + D) z = -P (dw + T dp + A mu dp n),    dq = z + mu dp n     the tangential problem; where elements slip, q follows its bound
+//! Azz dp + L dq - d = 0 on C,    dp = 0 outside and at a limit         the normal problem; d = 0 with a given approach, else sum dp = 0
 //! ```
 //!
-//! T dp is the sideways displacement by pressures, less that before the step; L dq is the displacement along the normal by tractions. Each
-//! problem has a solver: the tangential one [with its pressures held](crate::friction::Report::sensitivities), the normal one on a given
-//! contact area with the undeformed distance L dq. One after the other they make a map `dp -> M dp + b`. Its fixed point is found by
-//! minimising the residual over all directions so far (Eisenstat, Elman and Schultz 1983): each turn reduces it by a factor of 4 to 30.
+//! P, D, z and n are those of the derivatives with fixed pressures (modules `derivatives` and `sensitivity` of `friction`). A and Azz are the
+//! tangential and the normal influence, and d is the change of the approach. T dp is the sideways displacement by pressures, less that before the
+//! step. L dq is the displacement along the normal by tractions.
+//!
+//! Each problem has a solver: the tangential one with fixed pressures, and the normal one on a given contact area with the undeformed distance L dq.
+//! One after the other they define a map `dp -> M dp + b`. Its fixed point is computed by minimising the residual over all directions so far
+//! (Eisenstat, Elman and Schultz 1983). Each turn reduces the residual by a factor of 4 to 30.
 
 use super::options::Method;
 use super::stages;
@@ -26,37 +29,39 @@ use crate::progress::{Criterion, Goal, Monitor};
 use crate::scene::Load;
 use crate::sums::dot;
 
-/// Relative residual of the fixed point.
+/// Relative residual at which the fixed point is accepted.
 const TOLERANCE: f64 = 1e-6;
 /// Relative residual of each normal problem.
 const NORMAL_TOLERANCE: f64 = 1e-7;
-/// Most turns.
+/// Most directions, that is, turns after the first.
 const MOST_TURNS: usize = 30;
-/// The name of this memory in messages.
+/// The name of these arrays in messages.
 const FIELDS: &str = "the sensitivities of unlike bodies";
 
-/// Both problems, linear about the last result.
+/// The normal and the tangential problem, linearised about the last result.
 struct Linear<'a> {
     solver: &'a mut Solver,
     tangential: &'a mut friction::Solver,
     unlike: &'a mut UnlikeBodies,
     turn: &'a Turn<'a>,
-    /// The state of the normal problem: h is L dq, p is dp.
+    /// The unknowns of the normal problem: its h is L dq, and its p is dp.
     state: State,
-    /// dw with T dp on entry, dq on return.
+    /// dw + T dp before the tangential problem is solved, dq afterwards.
     tractions: Vec<Vector>,
-    /// Products of one component.
+    /// Products of the normal problem so far.
     products: f64,
 }
 
-/// A direction dp of the pressures, and `left = dp - M dp`, which has norm 1: a step of s along dp reduces the residual by s times `left`.
+/// A direction dp of the pressures, scaled so that `reduction = dp - M dp` has norm 1. A step of s along dp reduces the residual of the fixed point
+/// by s times `reduction`.
 struct Direction {
     dp: Vec<f64>,
-    left: Vec<f64>,
+    reduction: Vec<f64>,
 }
 
 impl Solver {
-    /// See [`Report::sensitivities`](friction::Report::sensitivities).
+    /// Computes the derivatives of the forces and the moment by the creepages and the spin, and adds them to the report `found`. See
+    /// [`Report::sensitivities`](friction::Report::sensitivities).
     pub(super) fn add_sensitivities(
         &mut self,
         tangent: &mut Tangent,
@@ -75,16 +80,17 @@ impl Solver {
         let mut state = State::new(grid, (load, 0.0), &self.problem.threads)?;
         state.contact.copy_from_slice(&self.state.contact);
         state.round_off = self.state.round_off;
-        // dw is of the order of an element's displacement by the largest p, so that dp is of the order of p.
+        // dw is scaled to the displacement of an element by the largest p, so that dp is of the order of p.
         let largest = self.state.p.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
         let unit = largest * self.problem.self_influence();
         let tractions = zeros(n, FIELDS)?;
         let mut linear = Linear { solver: self, tangential, unlike, turn, state, tractions, products: 0.0 };
         let mut derivatives = [[0.0; 3]; 3];
-        for by in 0..3 {
-            let Some(column) = linear.column(by, unit, monitor)? else { break };
-            derivatives.iter_mut().zip(column).for_each(|(row, value)| row[by] = value);
+        for motion in 0..3 {
+            let Some(column) = linear.column(motion, unit, monitor)? else { break };
+            derivatives.iter_mut().zip(column).for_each(|(row, value)| row[motion] = value);
         }
+        // Products of the tangential problem have two components, so one of the normal problem counts as half.
         found.products += 0.5 * linear.products + linear.tangential.take_products();
         found.seconds += began.elapsed().as_secs_f64();
         self.methods.projected_cg.go_back_to(window);
@@ -94,54 +100,56 @@ impl Solver {
 }
 
 impl Linear<'_> {
-    /// The derivatives of both forces and of the moment by one creepage; none: the caller cancelled.
-    fn column(&mut self, by: usize, unit: f64, monitor: &mut Monitor<'_>) -> Result<Option<[f64; 3]>> {
+    /// The derivatives of both forces and of the moment by one `motion`: the creepages (0, 1) or the spin (2). None: the caller cancelled. `unit` is
+    /// the size of dw during the computation.
+    fn column(&mut self, motion: usize, unit: f64, monitor: &mut Monitor<'_>) -> Result<Option<[f64; 3]>> {
         let (grid, n, friction) = (self.turn.scene.grid, self.tractions.len(), self.turn.friction);
-        let slip = |i: usize| friction.rigid_slip_by(&grid, i, by);
+        let slip = |i: usize| friction.rigid_slip_by(&grid, i, motion);
         let largest = (0..n).flat_map(slip).fold(0.0, |most: f64, w| most.max(w.abs()));
         let scale = unit / largest;
         if !(scale > 0.0 && scale.is_finite()) {
             return Ok(Some([0.0; 3]));
         }
-        let rigid = Some((by, scale));
+        let rigid = Some((motion, scale));
+        // From dp = 0 the residual of the fixed point is b.
         let mut dp: Vec<f64> = zeros(n, FIELDS)?;
-        let mut left: Vec<f64> = zeros(n, FIELDS)?;
-        self.turn(rigid, &dp, &mut left)?;
-        let first = norm(&left);
+        let mut residual: Vec<f64> = zeros(n, FIELDS)?;
+        self.turn(rigid, &dp, &mut residual)?;
+        let first = norm(&residual);
         let mut directions: Vec<Direction> = Vec::new();
-        while directions.len() < MOST_TURNS && norm(&left) > TOLERANCE * first {
-            if !monitor.uncounted_done(&grid, norm(&left) / first) {
+        while directions.len() < MOST_TURNS && norm(&residual) > TOLERANCE * first {
+            if !monitor.uncounted_done(&grid, norm(&residual) / first) {
                 return Ok(None);
             }
-            let Some(direction) = self.direction(&left, &directions)? else { break };
-            let along = dot(&left, &direction.left);
+            let Some(direction) = self.direction(&residual, &directions)? else { break };
+            let along = dot(&residual, &direction.reduction);
             add(&mut dp, along, &direction.dp);
-            add(&mut left, -along, &direction.left);
+            add(&mut residual, -along, &direction.reduction);
             directions.push(direction);
         }
         self.tractions(rigid, &dp)?;
         Ok(Some(self.tangential.resultant(friction.spin_centre, &self.tractions).map(|value| value / scale)))
     }
 
-    /// The next direction, from the residual; none at round-off.
+    /// The next direction: the residual, with its reduction made orthogonal to those of the directions so far. None if nothing remains but round-off.
     fn direction(&mut self, residual: &[f64], directions: &[Direction]) -> Result<Option<Direction>> {
-        let mut new = Direction { dp: copied(residual, FIELDS)?, left: zeros(residual.len(), FIELDS)? };
-        self.turn(None, residual, &mut new.left)?;
-        new.left.iter_mut().zip(residual).for_each(|(left, dp)| *left = dp - *left);
-        for Direction { dp, left } in directions {
-            let share = dot(&new.left, left);
-            add(&mut new.left, -share, left);
+        let mut new = Direction { dp: copied(residual, FIELDS)?, reduction: zeros(residual.len(), FIELDS)? };
+        self.turn(None, residual, &mut new.reduction)?;
+        new.reduction.iter_mut().zip(residual).for_each(|(reduction, dp)| *reduction = dp - *reduction);
+        for Direction { dp, reduction } in directions {
+            let share = dot(&new.reduction, reduction);
+            add(&mut new.reduction, -share, reduction);
             add(&mut new.dp, -share, dp);
         }
-        let length = norm(&new.left);
+        let length = norm(&new.reduction);
         if !(length > 0.0 && length.is_finite()) {
             return Ok(None);
         }
-        new.left.iter_mut().chain(&mut new.dp).for_each(|value| *value /= length);
+        new.reduction.iter_mut().chain(&mut new.dp).for_each(|value| *value /= length);
         Ok(Some(new))
     }
 
-    /// Solves both problems in turn: dq from a change `rigid` of the slip and from dp, then the change of the pressures from dq, written to `to`.
+    /// Computes `M dp`, plus b if `rigid` is a change of the rigid slip: solves for dq from dp and that change, then for the pressures from dq.
     fn turn(&mut self, rigid: Option<(usize, f64)>, dp: &[f64], to: &mut [f64]) -> Result<()> {
         self.tractions(rigid, dp)?;
         self.unlike.along_normal(&self.tractions, &mut self.state.h);
@@ -150,19 +158,19 @@ impl Linear<'_> {
         Ok(())
     }
 
-    /// dq by a change of a creepage, if any, and by dp.
+    /// Computes dq from dp and from a change of the rigid slip: `scale` times that of a unit of the motion (a creepage or the spin), if any.
     fn tractions(&mut self, rigid: Option<(usize, f64)>, dp: &[f64]) -> Result<()> {
         let Turn { scene, friction, .. } = self.turn;
         self.tractions.fill([0.0; 2]);
-        if let Some((by, scale)) = rigid {
-            let slip = |i: usize| friction.rigid_slip_by(&scene.grid, i, by).map(|w| scale * w);
+        if let Some((motion, scale)) = rigid {
+            let slip = |i: usize| friction.rigid_slip_by(&scene.grid, i, motion).map(|w| scale * w);
             self.tractions.iter_mut().enumerate().for_each(|(i, w)| *w = slip(i));
         }
         self.unlike.add_change(friction, dp, &mut self.tractions);
         self.tangential.change(friction, dp, &mut self.tractions)
     }
 
-    /// dp on C, with the undeformed distance of the state.
+    /// Solves the normal problem on C with the undeformed distance in the state.
     fn pressures(&mut self) -> Result<()> {
         let Linear { solver: Solver { problem, methods, set_up, .. }, state, turn, .. } = self;
         state.p.fill(0.0);
@@ -176,13 +184,13 @@ impl Linear<'_> {
         let survey = Survey::by(state, &problem.threads);
         let max_cycles = turn.options.max_cycles as u64;
         let goal = Goal { criterion: Criterion::Residual, tolerance: NORMAL_TOLERANCE, max_cycles };
-        let mut own = Monitor::silent();
+        let mut inner_monitor = Monitor::silent();
         let stages = stages::stages::<Fixed>(Method::Auto, problem.symmetric, set_up.without_multigrid.is_none());
-        let mut task = Task { problem, state, lowest: 0.0, set: Fixed, goal, monitor: &mut own };
+        let mut task = Task { problem, state, lowest: 0.0, set: Fixed, goal, monitor: &mut inner_monitor };
         methods.projected_cg.forget_windows();
         methods.solve(&mut task, (Start::Given, Some(survey)), stages, 0.0)?;
         task.count_products();
-        self.products += own.count.work_units;
+        self.products += inner_monitor.count.work_units;
         Ok(())
     }
 }

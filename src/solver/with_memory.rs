@@ -1,4 +1,4 @@
-//! Steps of bodies with memory: see [`Memory`].
+//! Time steps of visco-elastic bodies. A step is a normal problem of elastic bodies in scaled lengths: see [`Memory`], which defines s and H.
 
 use super::{Asked, Outcome, ProgressCallback, Report, Solver};
 use crate::contact::{lowest, Freshness};
@@ -8,8 +8,8 @@ use crate::memory::zeros;
 use crate::scene::{Load, Scene};
 
 impl Solver {
-    /// Solves a step of a checked scene as a problem of scaled lengths; `k`: the effect. A step that is refused or fails leaves the memory of
-    /// the bodies unchanged. A step that stops early, by a limit or a callback, is a step of that memory.
+    /// Solves a step of a checked scene, with the memory of effect number `k`. If the step is refused or fails, the history of the bodies does not
+    /// change. A step that ends early, by a limit or by the callback, is added to the history.
     pub(super) fn solve_with_memory(
         &mut self,
         asked: Asked<'_>,
@@ -23,10 +23,11 @@ impl Solver {
         if remembered.is_empty() {
             remembered = zeros(2 * scene.grid.len(), "what bodies remember")?;
         }
-        let (history, distance) = remembered.split_at_mut(scene.grid.len());
-        memory.fill(&self.beside.histories[k], history);
-        for ((distance, h), history) in distance.iter_mut().zip(scene.undeformed_distance).zip(&*history) {
-            *distance = (h + history) / s;
+        // H of each element, and (h + H)/s.
+        let (from_history, distance) = remembered.split_at_mut(scene.grid.len());
+        memory.fill(&self.beside.histories[k], from_history);
+        for ((distance, h), from_history) in distance.iter_mut().zip(scene.undeformed_distance).zip(&*from_history) {
+            *distance = (h + from_history) / s;
         }
         let load = match scene.load {
             Load::Approach(approach) => Load::Approach(approach / s),
@@ -38,9 +39,10 @@ impl Solver {
             report.visco = Some(memory.step_done(&mut self.beside.histories[k], &self.state));
             self.lengthen(s, scene.load, &mut report);
             let state = &mut self.state;
-            for (i, history) in history.iter().enumerate() {
-                state.u[i] += history;
-                state.h[i] = s * state.h[i] - history;
+            // Back from the scaled problem: u = s A p + H, and h is that of the scene.
+            for (i, from_history) in from_history.iter().enumerate() {
+                state.u[i] += from_history;
+                state.h[i] = s * state.h[i] - from_history;
             }
             state.u_is = Freshness::Stale;
             state.load = scene.load;
@@ -51,7 +53,7 @@ impl Solver {
         solved
     }
 
-    /// Scales the lengths of the result, the report and the ledger from those of the problem solved.
+    /// Multiplies the lengths of result, report and ledger by s: from the scaled problem back to the scene.
     fn lengthen(&mut self, s: f64, load: Load, report: &mut Report) {
         let state = &mut self.state;
         state.u.iter_mut().for_each(|u| *u *= s);
@@ -60,16 +62,16 @@ impl Solver {
             state.approach = approach;
         }
         let approach = state.approach;
-        // With a given force the error is that of the approach.
-        let of_found = if matches!(load, Load::Force(_)) { s } else { 1.0 };
+        // With a given force `error.force` is the error of the approach, a length.
+        let factor = if matches!(load, Load::Force(_)) { s } else { 1.0 };
         for row in &mut self.ledger {
             row.measures.approach *= s;
             row.measures.certificate.violation *= s;
-            row.error.force = row.error.force.map(|error| error * of_found);
+            row.error.force = row.error.force.map(|error| error * factor);
         }
         report.measures.approach = approach;
         report.measures.certificate.violation *= s;
-        report.error.force = report.error.force.map(|error| error * of_found);
-        report.halving.error = report.halving.error.map(|error| error.times(of_found));
+        report.error.force = report.error.force.map(|error| error * factor);
+        report.halving.error = report.halving.error.map(|error| error.times(factor));
     }
 }

@@ -28,19 +28,19 @@ const OVERTAKEN: [(f64, f64, f64); 3] = [(0.99, 0.1, 0.3), (1.0, 0.1, 0.593), (1
 
 #[test]
 fn a_stress_at_the_surface_that_overtakes_is_counted() {
-    let error = course(Quantity::MaxVonMises, &OVERTAKEN).falling(false).expect("an error").now();
+    let error = course(Quantity::MaxVonMises, &OVERTAKEN).error(false).expect("an error").now();
     // The remaining change at the surface is at least 2.41 times the last change: the limit is 1.3.
     assert!((0.29..0.45).contains(&error), "{error}");
-    let error = course(Quantity::VonMisesDepth, &OVERTAKEN).falling(false).expect("an error").now();
+    let error = course(Quantity::VonMisesDepth, &OVERTAKEN).error(false).expect("an error").now();
     assert!((error - 0.1).abs() < 1e-9, "{error}");
 }
 
 #[test]
 fn one_that_stays_below_is_not() {
     let low = OVERTAKEN.map(|(value, depth, at_surface)| (value, depth, 0.3 * at_surface));
-    let error = course(Quantity::MaxVonMises, &low).falling(false).expect("an error").now();
+    let error = course(Quantity::MaxVonMises, &low).error(false).expect("an error").now();
     assert!(error < 0.01, "{error}");
-    let error = course(Quantity::VonMisesDepth, &low).falling(false).expect("an error").now();
+    let error = course(Quantity::VonMisesDepth, &low).error(false).expect("an error").now();
     assert!(error < 1e-9, "{error}");
 }
 
@@ -48,8 +48,8 @@ fn one_that_stays_below_is_not() {
 #[test]
 fn only_a_stress_at_the_surface_may_be_infinite() {
     let grows = |depth: f64| [1.0, 1.1, 1.2].map(|value| (value, depth, if depth == 0.0 { value } else { 0.1 }));
-    assert!(course(Quantity::MaxShear, &grows(0.0)).falling(false).is_none());
-    let error = course(Quantity::MaxShear, &grows(0.2)).falling(false).expect("an error").now();
+    assert!(course(Quantity::MaxShear, &grows(0.0)).error(false).is_none());
+    let error = course(Quantity::MaxShear, &grows(0.2)).error(false).expect("an error").now();
     assert!((0.1..0.4).contains(&error), "{error}");
 }
 
@@ -67,7 +67,7 @@ fn a_stress_some_elements_below_the_surface_is_followed_too() {
             let peak = Peak { value: 1.0, depth: 1.0, elements: elements * 2f64.powi(k), close };
             course.add(k, Value { value: 1.0, peak: Some(peak), least: 0.0 }, 0.0);
         }
-        course.falling(false).expect("an error").now()
+        course.error(false).expect("an error").now()
     };
     assert!((error(0.5, 5.0) - 0.2).abs() < 1e-9, "{}", error(0.5, 5.0));
     assert_eq!(error(-0.5, 5.0), 0.0);
@@ -79,7 +79,7 @@ fn a_stress_some_elements_below_the_surface_is_followed_too() {
 #[test]
 fn a_largest_stress_within_an_element_is_not_believed_to_settle_at_once() {
     let near = [(0.8, 0.0, 0.8), (0.9, 0.0, 0.9), (0.901, 0.0, 0.901)];
-    let error = course(Quantity::MaxShear, &near).falling(false).expect("an error").now();
+    let error = course(Quantity::MaxShear, &near).error(false).expect("an error").now();
     assert!((0.049..0.2).contains(&error), "{error}");
 }
 
@@ -135,7 +135,7 @@ fn steady_rolling_of_unlike_bodies_is_slow() {
         for (k, value) in [3608.0, 3454.0, 3355.0].into_iter().enumerate() {
             course.add(k as i32, Value::from(value), 0.0);
         }
-        course.falling(false).expect("an error").now()
+        course.error(false).expect("an error").now()
     };
     assert!((error(0.1) - 99.0).abs() < 1e-9, "{}", error(0.1));
     assert!((178.0..179.0).contains(&error(0.25)), "{}", error(0.25));
@@ -151,7 +151,7 @@ fn an_area_is_no_better_than_its_outline() {
         let least = 0.3 / f64::sqrt(counted);
         course.add(k as i32, Value { value: 1.828, peak: None, least }, 0.0);
     }
-    let falling = course.falling(false).expect("an error");
+    let falling = course.error(false).expect("an error");
     assert!((falling.now() - 0.3 * 1.828 / 1828f64.sqrt()).abs() < 1e-12, "{falling:?}");
     assert!((falling.after(1) - 0.5 * falling.now()).abs() < 1e-12, "{falling:?}");
 }

@@ -10,7 +10,7 @@ fn past(excess: Option<Falling>) -> Past {
         enough: 32,
         excesses: vec![excess],
         is_believed: true,
-        leaps: true,
+        predicts_far: true,
         bytes: 100,
         seconds: 1.0,
         exponent: GROWTH,
@@ -55,7 +55,7 @@ fn there_are_enough_elements_across_the_contact() {
 fn quantities_of_several_grids_take_one_doubling_after_the_other() {
     let accuracy = Accuracy::new(1e-4);
     assert_eq!(accuracy.next(&past(by_four(100.0))), Next::Refine(3));
-    assert_eq!(accuracy.next(&Past { leaps: false, ..past(by_four(100.0)) }), Next::Refine(1));
+    assert_eq!(accuracy.next(&Past { predicts_far: false, ..past(by_four(100.0)) }), Next::Refine(1));
 }
 
 /// The next grid follows from one change, which may be small by chance, but not the end of the search.

@@ -16,7 +16,7 @@ fn errors_of_first_and_second_order_are_covered_and_carried_on() {
         for (order, most) in [(1, 1.01), (2, 2.01)] {
             let value = |h: f64| 3.0 + 0.7 * h.powi(order);
             let last = *doublings.last().expect("a grid");
-            let falling = of(doublings, value).falling().expect("an error");
+            let falling = of(doublings, value).error().expect("an error");
             for more in 0..3 {
                 let truth = 0.7 * 0.5_f64.powi(order * (last + more));
                 let estimated = falling.after(more);
@@ -31,16 +31,16 @@ fn errors_of_first_and_second_order_are_covered_and_carried_on() {
 
 #[test]
 fn two_grids_count_as_first_order() {
-    let falling = of(&[0, 1], |h| 1.0 + h).falling().expect("an error");
+    let falling = of(&[0, 1], |h| 1.0 + h).error().expect("an error");
     assert_eq!((falling.by_two, falling.by_four), (0.5, 0.0));
-    assert!(of(&[0], |h| h).falling().is_none());
+    assert!(of(&[0], |h| h).error().is_none());
 }
 
 #[test]
 fn what_grows_without_an_end_has_no_error() {
     // As at the tip of a cone, and at the edge of a punch.
-    assert!(of(&[0, 1, 2], |h| -h.ln()).falling().is_none());
-    assert!(of(&[0, 1, 2, 3], |h| h.powf(-0.5)).falling().is_none());
+    assert!(of(&[0, 1, 2], |h| -h.ln()).error().is_none());
+    assert!(of(&[0, 1, 2, 3], |h| h.powf(-0.5)).error().is_none());
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn what_jumps_is_covered_by_the_change_before() {
     for (k, value) in [1.3, 1.1, 1.1].into_iter().enumerate() {
         sequence.add(k as i32, value, 1e-6);
     }
-    let falling = sequence.falling().expect("an error");
+    let falling = sequence.error().expect("an error");
     assert!(falling.now() >= 0.03, "{falling:?}");
     assert_eq!(falling.hidden, 1e-6);
 }
@@ -62,9 +62,9 @@ fn a_small_change_is_no_second_order_where_the_order_is_the_first() {
         sequence.add(k as i32, value, 0.0);
     }
     // Half of the last change but one.
-    let first = sequence.of_first_order().expect("an error");
+    let first = sequence.error_of_first_order().expect("an error");
     assert!((first.now() - 0.065).abs() < 1e-12 && first.by_four == 0.0, "{first:?}");
-    assert!(sequence.falling().expect("an error").now() < 0.03);
+    assert!(sequence.error().expect("an error").now() < 0.03);
 }
 
 /// A value with the error `h^.5`: changes fall by the square root of 2, less than the factor 0.75 allows.
@@ -72,13 +72,13 @@ fn a_small_change_is_no_second_order_where_the_order_is_the_first() {
 fn what_converges_slowly_is_covered() {
     for last in [1, 2, 5] {
         let sequence = of(&(0..=last).collect::<Vec<_>>(), |h| 1.0 - h.sqrt());
-        let (falling, truth) = (sequence.slow(0.75).expect("an error"), 0.5f64.powi(last).sqrt());
+        let (falling, truth) = (sequence.error_if_slow(0.75).expect("an error"), 0.5f64.powi(last).sqrt());
         let least = if last == 1 { 0.4 } else { 0.99 };
         assert!((least * truth..1.01 * truth).contains(&falling.now()), "{last}: {falling:?} of {truth}");
     }
     // If changes do not fall, the error is three times the last change.
     let grows = of(&[0, 1, 2], |h| -h.log2());
-    assert!(grows.falling().is_none());
-    assert!((grows.slow(0.75).expect("an error").now() - 3.0).abs() < 1e-12);
-    assert!(of(&[0], |h| h).slow(0.75).is_none());
+    assert!(grows.error().is_none());
+    assert!((grows.error_if_slow(0.75).expect("an error").now() - 3.0).abs() < 1e-12);
+    assert!(of(&[0], |h| h).error_if_slow(0.75).is_none());
 }

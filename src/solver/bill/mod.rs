@@ -1,7 +1,8 @@
-//! The bill of effects: the change of each quantity without an effect, the savings by leaving it out, and the verdict.
+//! The bill of effects: how much each quantity changes if an effect is left out, what that saves, and a verdict on whether the effect is needed.
 //!
-//! The scene is solved on small grids, as it is and without each of its effects. The change from grid to grid gives the error of a change of a
-//! quantity (module `quantities`). Pairs are left out as well: the change without two effects is not the sum of the changes without each.
+//! The scene is solved on small grids, as it is and without each of its effects. On a sequence of finer grids, the differences of a change give the
+//! error of the change (module `quantities`). Pairs of effects are left out as well, because the change without two effects is not the sum of the
+//! changes without each.
 
 mod asked;
 mod effort;
@@ -21,12 +22,15 @@ use crate::error::Result;
 use crate::scene::Scene;
 use small_grids::SmallGrids;
 
-/// The bill of a scene: for each omission, and for each pair, a row for each of the quantities `wanted`. A scene without effects has none.
-/// ITERATION_LIMIT: a solve of the last grid ended at `max_cycles`, and the rows that need it have no change (`Lack::Unsolved`). CANCELLED (by
-/// `progress`): rows have the results of the last grid that was solved.
+/// Makes the bill of a scene: one row for each omission and for each pair of omissions, and for each of the quantities `wanted`. A scene without
+/// effects has no rows. Returns the outcome as well:
+///
+/// - ITERATION_LIMIT: a solve on the last grid ended at `max_cycles`. Rows that need this solve have no change (`Lack::Unsolved`).
+/// - CANCELLED: `progress` cancelled. Rows have the results of the last grid that was solved.
+/// - CONVERGED: otherwise.
 ///
 /// # Errors
-/// Those of the scene; `Unsupported`: own coefficients, tractions kept by a handle, a fixed contact area.
+/// Those of the scene. `Unsupported`: the caller's influence coefficients, tractions kept by a handle, or a given contact area.
 pub fn effects_bill(
     scene: &Scene<'_>,
     options: &Options,

@@ -1,4 +1,5 @@
-//! Omissions: the named effects of a scene, and refinements that it has without naming them.
+//! Omissions: what a bill leaves out of a scene. These are the effects of the scene, and parts of effects: the coupling by unlike bodies, the spin, a
+//! friction law.
 
 use std::mem::{replace, take};
 
@@ -7,41 +8,42 @@ use crate::scene::{Bodies, Coefficient, Each, Layer, Scene};
 use crate::solver::numbered::numbered;
 
 numbered! {
-    /// An effect that is left out or replaced by a simpler one.
+    /// An effect, or a part of one, that is left out or replaced by a simpler one. The comment of a variant tells what is left out; and, after a
+    /// colon, what remains.
     Omission {
-        /// The coatings: the bodies are of the substrate's material.
+        /// The coatings: the bodies have the substrate's material up to their surface.
         Coating = 1: "coating",
-        /// The period: the scene stands alone.
+        /// The periodic repetition: the scene is alone on a half-space.
         Period: "period",
-        /// The patches: all are fully coupled.
+        /// The patches: pressures displace all elements as on a half-space.
         Patches: "patches",
         /// The thin compliant layer.
         Layer: "layer",
         /// The limit of pressures.
         PressureLimit: "pressure_limit",
-        /// Friction, with the effect of tractions on pressures of unlike bodies.
+        /// Friction, and with it the displacements along the normal by the tractions of unlike bodies.
         Friction: "friction",
-        /// The coupling of tractions and pressures of unlike bodies.
+        /// The coupling of tractions and pressures of unlike bodies: like bodies of the same compliances replace them.
         Coupling: "coupling",
         /// The spin.
         Spin: "spin",
         /// The tangential compliance of a third body.
         FrictionCompliance: "friction_compliance",
-        /// The coatings, replaced by a thin compliant layer: their limit for waves much longer than their thickness.
+        /// The coatings: a thin compliant layer replaces them, which has their response to waves much longer than their thickness.
         CoatingAsLayer: "coating_as_layer",
         /// The attraction between the bodies.
         Adhesion: "adhesion",
         /// The law of friction: the coefficient is that at rest everywhere.
         FrictionLaw: "friction_law",
-        /// The yield of a third body. Without it friction alone bounds the tractions.
+        /// The yield of a third body: friction alone bounds the tractions.
         FrictionLayer: "friction_layer",
-        /// The relaxation of the bodies, which keep their instantaneous compliance.
+        /// The relaxation of the bodies: they keep their instantaneous compliance.
         Visco: "visco",
     }
 }
 
 impl Omission {
-    /// The omissions of a bill: each alone, then the pairs.
+    /// What a bill leaves out: each omission that the scene allows alone, then, if `pairs`, each two of them.
     pub fn left_out_of(scene: &Scene<'_>, pairs: bool) -> Vec<Vec<Omission>> {
         let all = Omission::of(scene);
         let mut left_out: Vec<Vec<Omission>> = all.iter().map(|one| vec![*one]).collect();
@@ -57,28 +59,29 @@ impl Omission {
         Omission::ALL.into_iter().filter(|omission| omission.without(scene).0).collect()
     }
 
-    /// Whether leaving out both differs from leaving out one of them.
+    /// Whether two omissions can be left out together, and this differs from leaving out one of them.
     pub fn goes_with(self, other: Omission) -> bool {
         use Omission::{
             Coating, CoatingAsLayer, Coupling, Friction, FrictionCompliance, FrictionLaw, FrictionLayer, Layer, Spin,
         };
-        let same = |a: Omission, b: Omission| {
+        // Whether `a` includes `b`, or excludes it.
+        let covers = |a: Omission, b: Omission| {
             matches!((a, b), (Coating, CoatingAsLayer) | (Layer, CoatingAsLayer))
                 || a == Friction && [Coupling, Spin, FrictionCompliance, FrictionLaw, FrictionLayer].contains(&b)
         };
-        self != other && !same(self, other) && !same(other, self)
+        self != other && !covers(self, other) && !covers(other, self)
     }
 
-    /// The scene without the effect.
+    /// The scene with this omission.
     pub fn leave_out<'a>(self, scene: &Scene<'a>) -> Scene<'a> {
         self.without(scene).1
     }
 
-    /// Whether the scene has the effect, and the scene without it.
+    /// Whether the scene allows this omission (it has the effect), and the scene with the omission.
     fn without<'a>(self, scene: &Scene<'a>) -> (bool, Scene<'a>) {
         let mut left = scene.clone();
         let none = Coefficient::Uniform(0.0);
-        let is_in = match self {
+        let is_allowed = match self {
             Omission::Coating => {
                 left.coating = None;
                 may_lose_coating(scene)
@@ -106,19 +109,20 @@ impl Omission {
             Omission::FrictionLayer => left.friction.as_mut().is_some_and(|friction| friction.layer.take().is_some()),
             Omission::Visco => left.visco.take().is_some_and(|visco| visco.relaxes()),
         };
-        (is_in, left)
+        (is_allowed, left)
     }
 }
 
-/// Rigid bodies without coatings have no compliance, and coatings on them may be all that relaxes.
+/// Whether the scene has coatings and stays valid without them. It does not if the bodies are rigid, as nothing is then elastic without coatings; nor
+/// if bodies relax, as the relaxing part may be the coatings.
 fn may_lose_coating(scene: &Scene<'_>) -> bool {
     let plain = scene.plain();
     let relaxes = scene.visco.is_some_and(|visco| visco.relaxes());
-    let is_left = scene.bodies.check().is_ok() && !relaxes;
-    is_left && scene.coating.is_some_and(|coating| (0..2).any(|body| coating.in_effect(body, &plain).is_some()))
+    let stays_valid = scene.bodies.check().is_ok() && !relaxes;
+    stays_valid && scene.coating.is_some_and(|coating| (0..2).any(|body| coating.in_effect(body, &plain).is_some()))
 }
 
-/// Like bodies of the same compliance, normal and tangential: the means of 1/G and of nu/G.
+/// Like bodies with the same normal and tangential compliance as `bodies`: with the means of 1/G and of nu/G of both.
 fn alike(bodies: &Bodies) -> Bodies {
     let mean = |of: [f64; 2]| 0.5 * (of[0] + of[1]);
     let compliance = mean([0, 1].map(|b| 1.0 / bodies.shear_modulus[b]));
@@ -126,13 +130,14 @@ fn alike(bodies: &Bodies) -> Bodies {
     Bodies::same(1.0 / compliance, ratio.min(0.5))
 }
 
-/// Wave number times thickness of a long wave. The error of a thin layer is of this order.
+/// Wave number times thickness of the coatings, for the wave whose response the thin layer gets. The relative error of the limit of long waves is of
+/// this order.
 const LONG_WAVE: f64 = 1e-3;
 
-/// The thin layer with the response of the coatings to long waves, together with the scene's layer. None if that layer differs between elements, or
-/// if the coatings are stiffer than the bodies.
+/// The thin compliant layer that has the response of the coatings to long waves, plus the scene's own layer. None if the scene's layer differs
+/// between elements, or if the coatings are stiffer than the bodies.
 fn as_layer<'a>(scene: &Scene<'a>) -> Option<Layer<'a>> {
-    let there = match scene.layer {
+    let of_layer = match scene.layer {
         None => 0.0,
         Some(Layer(Each::Uniform(compliance))) => compliance,
         Some(Layer(Each::PerElement(_))) => return None,
@@ -142,9 +147,9 @@ fn as_layer<'a>(scene: &Scene<'a>) -> Option<Layer<'a>> {
         (0..2).filter_map(|body| coating.in_effect(body, &plain)).map(|layer| layer.thickness).fold(0.0, f64::max);
     let wave_number = LONG_WAVE / thickest;
     // Half-spaces alone have the response 2/(E* k).
-    let added = coating.compliance(&plain, wave_number).ok()? - 2.0 * scene.bodies.compliance() / wave_number;
-    if added < 0.0 {
+    let of_coatings = coating.compliance(&plain, wave_number).ok()? - 2.0 * scene.bodies.compliance() / wave_number;
+    if of_coatings < 0.0 {
         return None;
     }
-    Some(Layer(Each::Uniform(there + added)))
+    Some(Layer(Each::Uniform(of_layer + of_coatings)))
 }

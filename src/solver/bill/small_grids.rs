@@ -1,4 +1,4 @@
-//! The small grids of a bill: on each the scene is solved as it is, and with each omission.
+//! The small grids of a bill. On each grid the scene is solved as it is, and with each omission: these scenes are the variants.
 
 use std::time::Instant;
 
@@ -16,18 +16,18 @@ use crate::solver::seconds::{seconds_on, Cost, GROWTH, NEXT_GRID_RATIO};
 use crate::solver::{Options, Outcome, ProgressCallback};
 use crate::threads::Threads;
 
-/// The effort in ns that a bill may always take: below a tenth of a second, because it is not measured exactly.
+/// The [effort] in ns that a bill may always take. It is less than the tenth of a second that a bill may take, because the effort is not exact.
 const LEAST_EFFORT: f64 = 7e7;
-/// The effort that a bill may take, relative to the scene's.
+/// The effort that a bill may take, relative to that of the scene on its own grid.
 const EFFORT_SHARE: f64 = 0.05;
-/// Least elements of the first grid in its longer direction, if the scene's grid has twice as many.
+/// The first grid has at least this many elements in its longer direction, if the scene's grid has at least twice as many.
 const FIRST_GRID: usize = 16;
-/// Elements that change sides at once: four with two planes of symmetry. Areas do not resolve smaller changes.
+/// Elements that enter or leave an area together: four with two planes of symmetry. Counts of elements do not resolve smaller changes.
 const JUMP: f64 = 4.0;
-/// Tolerance of solves relative to the target.
+/// Tolerance of the solves, relative to the target.
 const TOLERANCE_PER_TARGET: f64 = 0.01;
 
-/// Refuses scenes without a bill.
+/// Refuses scenes and options for which there is no bill.
 pub fn check(scene: &Scene<'_>, options: &Options, asked: &BillOptions) -> Result<()> {
     options.check_several_grids()?;
     let (target, seconds) = (asked.target, asked.max_seconds);
@@ -42,40 +42,42 @@ pub fn check(scene: &Scene<'_>, options: &Options, asked: &BillOptions) -> Resul
 /// The value of a quantity, or why there is none.
 type Value = std::result::Result<f64, Lack>;
 
-/// The scene with an omission, or as it is.
+/// The scene with some omissions, or as it is, and its results.
 pub struct Variant {
+    /// What is left out; empty for the scene as it is.
     pub left_out: Vec<Omission>,
-    /// By quantity: the value, on each grid.
+    /// The value of each wanted quantity on the last grid.
     pub values: Vec<Value>,
-    /// By quantity: the change against the scene as it is, grid by grid.
+    /// The change of each wanted quantity from the scene as it is, grid by grid.
     pub changes: Vec<Sequence>,
-    /// Whether the elements of the finest grid so far resolve the peak of the pressure.
+    /// Whether the elements of the last grid resolve the peak of the pressure.
     has_peak: bool,
-    /// The largest relative change on the finest grid so far of quantities other than pressures and areas.
+    /// The largest relative change, on the last grid, of quantities other than pressures, stresses, areas and the stiffness.
     moved: f64,
     /// The cost on each grid.
     costs: Vec<Cost>,
-    /// The effort on the finest grid so far; 0 if that refuses the variant.
+    /// The effort on the last grid; 0 if the variant was refused there.
     effort: f64,
-    /// Predicted bytes of the scene's grid.
+    /// Predicted bytes on the scene's grid.
     bytes: f64,
 }
 
-/// A variant solved on a grid, and the effort; none: refused.
+/// The solve of a variant on a grid, and its effort. None: the variant was refused.
 type Solved = Option<(OnGrid, f64)>;
 
-/// The largest relative change of quantities other than pressures and areas; infinite if there are none.
-fn moved(wanted: &[Quantity], now: &[Value], before: &[Value]) -> f64 {
+/// The largest relative change from `as_it_is` to `without` of quantities other than pressures, stresses, areas and the stiffness. Infinite if there
+/// are none.
+fn moved(wanted: &[Quantity], without: &[Value], as_it_is: &[Value]) -> f64 {
     let is_smooth =
         |quantity: &Quantity| !quantity.is_local() && !quantity.is_area() && *quantity != Quantity::Stiffness;
-    let of = |(quantity, (now, before)): (&Quantity, (&Value, &Value))| match (*now, *before) {
-        (Ok(now), Ok(before)) if is_smooth(quantity) && before != 0.0 => Some(((now - before) / before).abs()),
+    let change = |(quantity, (without, as_it_is)): (&Quantity, (&Value, &Value))| match (*without, *as_it_is) {
+        (Ok(without), Ok(value)) if is_smooth(quantity) && value != 0.0 => Some(((without - value) / value).abs()),
         _ => None,
     };
-    wanted.iter().zip(now.iter().zip(before)).filter_map(of).reduce(f64::max).unwrap_or(f64::INFINITY)
+    wanted.iter().zip(without.iter().zip(as_it_is)).filter_map(change).reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
-/// All variants on the grids so far.
+/// All variants, with their results on the grids so far.
 pub struct SmallGrids<'s, 'a> {
     scene: &'s Scene<'a>,
     options: Options,
@@ -90,7 +92,7 @@ pub struct SmallGrids<'s, 'a> {
 }
 
 impl<'s, 'a> SmallGrids<'s, 'a> {
-    /// The variants of the omissions `left_out`.
+    /// The variants of a scene: as it is, and with each item of `left_out`. Nothing is solved yet.
     pub fn new(
         scene: &'s Scene<'a>,
         options: &Options,
@@ -101,7 +103,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
         let least = options.tolerance.max(LEAST_TOLERANCE);
         let tolerance = (TOLERANCE_PER_TARGET * asked.target).clamp(LEAST_TOLERANCE, least);
         let options = Options { tolerance, threads: 1, estimates: true, ..*options };
-        let of = |left_out: Vec<Omission>| Variant {
+        let variant = |left_out: Vec<Omission>| Variant {
             left_out,
             values: vec![Err(Lack::Unsolved); wanted.len()],
             changes: vec![Sequence::default(); wanted.len()],
@@ -111,7 +113,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             effort: 0.0,
             bytes: 0.0,
         };
-        let variants = std::iter::once(vec![]).chain(left_out).map(of).collect();
+        let variants = std::iter::once(vec![]).chain(left_out).map(variant).collect();
         SmallGrids {
             scene,
             options,
@@ -123,19 +125,19 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
         }
     }
 
-    /// Solves on finer and finer grids within the time, up to the scene's own.
+    /// Solves on finer and finer grids, until the time or the effort is used or the scene's own grid is reached. At least two grids are solved.
     pub fn solve(&mut self, mut progress: Option<ProgressCallback<'_>>) -> Result<Outcome> {
         let began = Instant::now();
         if self.variants.len() < 2 {
             return Ok(Outcome::Converged);
         }
         let elements = self.scene.grid.mx.max(self.scene.grid.my);
-        // At least two grids, as one alone gives no errors.
+        // At least two grids, because a single one gives no errors.
         let first = -((elements / FIRST_GRID).max(2).ilog2() as i32);
         let mut spent = 0.0;
         for doublings in first..=0 {
             let entered = Instant::now();
-            if !self.on(doublings, &mut progress)? {
+            if !self.solve_on(doublings, &mut progress)? {
                 return Ok(Outcome::Cancelled);
             }
             let effort: f64 = self.variants.iter().map(|variant| variant.effort).sum();
@@ -154,25 +156,26 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
         Ok(self.outcome)
     }
 
-    /// One grid; false: cancelled. The results stay those of the grid before if the solve is cancelled, and if a coarser grid refuses the scene.
-    fn on(&mut self, doublings: i32, progress: &mut Option<ProgressCallback<'_>>) -> Result<bool> {
+    /// Solves all variants on one grid; false: cancelled. If a solve is cancelled, or the scene as it is is refused on a grid coarser than its own,
+    /// the results remain those of the grid before.
+    fn solve_on(&mut self, doublings: i32, progress: &mut Option<ProgressCallback<'_>>) -> Result<bool> {
         let grid = scaled(self.scene, doublings)?;
         let regridded = Regridded::new(self.scene, grid, None)?;
         let scene = regridded.scene(self.scene);
         let mut solved: Vec<Solved> = vec![];
         for (k, variant) in self.variants.iter().enumerate() {
-            let left = variant.left_out.iter().fold(scene.clone(), |scene, omission| omission.leave_out(&scene));
+            let without = variant.left_out.iter().fold(scene.clone(), |scene, omission| omission.leave_out(&scene));
             let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
-            match OnGrid::solve(&left, &self.options, &self.wanted, watch) {
+            match OnGrid::solve(&without, &self.options, &self.wanted, watch) {
                 Ok(found) if found.outcome == Outcome::Cancelled => return Ok(false),
                 Ok(found) => {
-                    let effort = effort(&left, &found, &self.wanted);
+                    let effort = effort(&without, &found, &self.wanted);
                     solved.push(Some((found, effort)));
                 }
-                // The variant cannot be solved, and has no values.
+                // This variant cannot be solved and has no values.
                 Err(Error::Infeasible(_) | Error::Unsupported(_)) if k > 0 => solved.push(None),
                 Err(_) if k > 0 && doublings < 0 => solved.push(None),
-                // A coarser grid may be refused where the scene's is not.
+                // A grid coarser than the scene's may be refused; finer ones follow.
                 Err(_) if doublings < 0 => return Ok(true),
                 Err(error) => return Err(error),
             }
@@ -181,7 +184,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
         Ok(true)
     }
 
-    /// Adds the results of a grid. No value and no effort of the grid before stays.
+    /// Replaces the values and efforts of all variants by those of a new grid, and adds the changes and costs to the earlier ones.
     fn add(&mut self, (doublings, grid): (i32, Grid), solved: Vec<Solved>) {
         self.ratio = self.scene.grid.len() as f64 / grid.len() as f64;
         let is_cut_short =
@@ -196,7 +199,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             variant.costs.push(Cost { elements: grid.len() as f64, seconds, setup, products: found.work_units });
             (variant.effort, variant.bytes) = (effort, found.bytes as f64 * self.ratio);
             variant.has_peak = found.has_peak(&self.wanted);
-            // If contact occurs only on finer grids, the 0 of a coarser one is no information.
+            // Without contact on a coarser grid, a value of 0 tells nothing: finer grids may have contact.
             let is_missed = |value: f64| value == 0.0 && found.is_apart && doublings < 0;
             for (q, quantity) in self.wanted.iter().enumerate() {
                 let value = found.values[q].map(|found| found.value);
@@ -206,12 +209,14 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             variant.moved = moved(&self.wanted, &variant.values, &as_it_is);
             for (q, quantity) in self.wanted.iter().enumerate() {
                 if let (Ok(value), Some(Ok(before))) = (variant.values[q], as_it_is.get(q)) {
-                    // Areas, and stiffnesses of the contact area, change by whole elements.
+                    // The uncertainty of a change because areas, and stiffnesses of the contact area, change by whole elements: at most [`JUMP`]
+                    // elements, and at most in proportion to the change of smooth quantities.
                     let (jump, most) = (JUMP * grid.element_area(), MOST_MOVED * variant.moved * before.abs());
                     let by_elements = match quantity {
-                        // On the scene's own grid changes are exact.
+                        // The scene's own grid defines the exact change.
                         _ if doublings >= 0 => 0.0,
-                        // Near full slip it changes by far more than forces do, and finer grids may have some of an empty one.
+                        // Near full slip the stick area changes far more than forces do. If it is empty here, finer grids may have a few elements of
+                        // it.
                         Quantity::StickArea => {
                             jump.min(STICK_MOVED * variant.moved * before.abs().max(grid.element_area()))
                         }
@@ -232,27 +237,27 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
 
     /// The rows of the bill.
     pub fn rows(&self) -> Vec<BillRow> {
-        let Some((whole, variants)) = self.variants.split_first() else { return vec![] };
+        let Some((as_it_is, variants)) = self.variants.split_first() else { return vec![] };
         let seconds = |variant: &Variant| seconds_on(&variant.costs, self.scene.grid.len() as f64);
-        let as_it_is = seconds(whole);
-        let of = |variant: &Variant| -> Vec<BillRow> {
-            let without = seconds(variant);
+        let seconds_as_it_is = seconds(as_it_is);
+        let rows_of = |variant: &Variant| -> Vec<BillRow> {
+            let seconds_without = seconds(variant);
             let row = |(q, quantity): (usize, &Quantity)| {
                 let measured = Measured {
                     quantity: *quantity,
-                    value: whole.values[q],
+                    value: as_it_is.values[q],
                     without: variant.values[q],
                     change: &variant.changes[q],
                     on_own_grid: self.ratio == 1.0,
-                    has_peaks: whole.has_peak && variant.has_peak,
+                    has_peaks: as_it_is.has_peak && variant.has_peak,
                     moved: variant.moved,
                 };
-                let costs = [as_it_is, without];
-                let bytes = [whole.bytes, variant.bytes];
-                measured.row(&variant.left_out, self.asked.target, costs, bytes)
+                let seconds = [seconds_as_it_is, seconds_without];
+                let bytes = [as_it_is.bytes, variant.bytes];
+                measured.row(&variant.left_out, self.asked.target, seconds, bytes)
             };
             self.wanted.iter().enumerate().map(row).collect()
         };
-        variants.iter().flat_map(of).collect()
+        variants.iter().flat_map(rows_of).collect()
     }
 }

@@ -1,89 +1,95 @@
-//! One row of the bill: a change, its error, and the verdict.
+//! One row of the bill: the change of a quantity, the error of the change, and the verdict.
 
 use super::omission::Omission;
 use crate::solver::quantities::{Lack, Quantity, Sequence, SUM_RATIO};
 
-/// Bound on the relative change of an area, or of a peak that elements do not resolve, over the largest of the other quantities. The area
-/// of a Hertz contact changes as the approach does, that of other smooth surfaces up to twice as much.
+/// The relative change of an area, or of a peak that elements do not resolve, is at most this times the largest relative change of smooth quantities
+/// (force, approach, gap). The area of a Hertz contact changes in proportion to the approach, that of other smooth surfaces up to twice as much.
 pub const MOST_MOVED: f64 = 3.0;
-/// The same for stick areas, which change by 1/(1 - F/(mu N)) times the force: at .999 of full slip.
+/// The same factor for stick areas. Their relative change is that of the force times 1/(1 - F/(mu N)); the factor is that of .999 of full slip.
 pub const STICK_MOVED: f64 = 1e3;
 
-/// Bound on the relative error of single pressures over the residual (docs/accuracy.md: a hundredth of the target for these).
+/// Bound on the relative error of single pressures, over the residual (docs/accuracy.md: their tolerance is a hundredth of the target).
 const ERROR_PER_RESIDUAL: f64 = 100.0;
 
 /// The verdict of a row; numbered as in the C ABI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The change is too near to the target, or its error is unknown: finer grids, that is more time, decide.
+    /// The change is too near to the target, or its error is unknown. Finer grids, which take more time, may decide.
     NotDecided,
-    /// The quantity changes by less than the target, its error included.
+    /// The change plus its error is at most the target: the effect may be left out.
     Negligible,
-    /// The quantity changes by more than the target, its error subtracted.
+    /// The change less its error exceeds the target: the effect is needed.
     Needed,
 }
 
-/// The change of a quantity by leaving out one thing, or two, and the savings.
+/// One row of a bill: the change of a quantity if one effect is left out, or two, and what this saves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BillRow {
-    /// The omission.
+    /// What is left out.
     pub omission: Omission,
-    /// A second omission beside it.
+    /// What else is left out at the same time, in rows of pairs.
     pub other: Option<Omission>,
     /// The quantity that changes.
     pub quantity: Quantity,
-    /// The value of the scene as it is, on the last small grid, if it has one.
+    /// The value in the scene as it is, on the last small grid; None if there is none.
     pub value: Option<f64>,
-    /// The change by leaving out.
+    /// The value with the omission less the value of the scene as it is; None if unknown.
     pub change: Option<f64>,
-    /// The error of the change; none: unknown.
+    /// The error of the change; None if unknown.
     pub error: Option<f64>,
-    /// Why value, change or error is unknown.
+    /// Why value, change or error is unknown; None if all are known.
     pub lack: Option<Lack>,
-    /// Negligible, needed, or not decided.
+    /// Whether the omission is negligible for this quantity.
     pub verdict: Verdict,
-    /// Predicted seconds of the scene on its own grid with one thread, as it is and with the omission.
+    /// Predicted seconds on the scene's own grid with one thread: of the scene as it is, and with the omission.
     pub seconds: [f64; 2],
-    /// Predicted bytes, likewise.
+    /// Predicted bytes on the scene's own grid: of the scene as it is, and with the omission.
     pub bytes: [f64; 2],
 }
 
-/// A quantity with and without the omissions.
+/// What the small grids have measured for one row of a bill.
 pub struct Measured<'a> {
     pub quantity: Quantity,
+    /// The value of the scene as it is, on the last grid.
     pub value: Result<f64, Lack>,
+    /// The value with the omission, on the last grid.
     pub without: Result<f64, Lack>,
+    /// The change by the omission, grid by grid.
     pub change: &'a Sequence,
-    /// Whether the last grid is that of the scene, on which the change is then exact.
+    /// Whether the last grid is the scene's own. The change on that grid is the exact one.
     pub on_own_grid: bool,
-    /// Whether peaks of the pressure are known on the last grid.
+    /// Whether the elements of the last grid resolve the peaks of the pressure.
     pub has_peaks: bool,
-    /// The largest relative change on the last grid of quantities other than pressures and areas.
+    /// The largest relative change, on the last grid, of quantities other than pressures, stresses, areas and the stiffness.
     pub moved: f64,
 }
 
 impl Measured<'_> {
-    /// The error of the change on the scene's grid. An unresolved peak changes as the other quantities do, except by a limit that only peaks reach.
+    /// The error of the change, as an estimate of the change on the scene's grid. Elements that do not resolve a peak show its change only roughly:
+    /// the peak changes as other quantities do. A pressure limit may be reached by such peaks alone, so its omission has no error then.
     fn error(&self, left_out: &[Omission]) -> Option<f64> {
-        // A change of a sum converges, as the sum does.
-        let slow = if self.quantity.is_local() { None } else { self.change.slow(SUM_RATIO) };
-        let falling = self.change.falling().or(slow).map(|falling| falling.now());
+        // A sum converges, and so does its change.
+        let slow = if self.quantity.is_local() { None } else { self.change.error_if_slow(SUM_RATIO) };
+        let error = self.change.error().or(slow).map(|error| error.now());
         match self.quantity {
-            // The change on the scene's grid counts, whatever the ones before.
-            _ if self.on_own_grid => falling.or(self.change.hidden().map(|hidden| ERROR_PER_RESIDUAL * hidden)),
+            // On the scene's own grid only the residual has an error. It counts if the sequence has none.
+            _ if self.on_own_grid => {
+                error.or(self.change.residual_error().map(|residual_error| ERROR_PER_RESIDUAL * residual_error))
+            }
             Quantity::MaxPressure if !self.has_peaks => {
-                let error = falling?.max(MOST_MOVED * self.moved * self.value.ok()?.abs());
+                let error = error?.max(MOST_MOVED * self.moved * self.value.ok()?.abs());
                 (error.is_finite() && !left_out.contains(&Omission::PressureLimit)).then_some(error)
             }
-            _ => falling,
+            _ => error,
         }
     }
 
-    /// The row of the bill.
+    /// Makes the row of the bill. `seconds` and `bytes` are those of [`BillRow`].
     pub fn row(&self, left_out: &[Omission], target: f64, seconds: [f64; 2], bytes: [f64; 2]) -> BillRow {
         let (change, error) = match (self.value, self.without) {
             (Ok(_), Ok(_)) => (self.change.value(), self.error(left_out)),
-            // The last change is that of a coarser grid.
+            // Without both values on the last grid, the last change is one of a coarser grid.
             _ => (None, None),
         };
         let verdict = match (self.value, change, error) {
@@ -111,6 +117,7 @@ impl Measured<'_> {
     }
 }
 
+/// The verdict on a change with this error, for a target relative to the value.
 fn decide(value: f64, change: f64, error: f64, target: f64) -> Verdict {
     let allowed = target * value.abs();
     if change.abs() + error <= allowed {
@@ -122,7 +129,7 @@ fn decide(value: f64, change: f64, error: f64, target: f64) -> Verdict {
     }
 }
 
-/// The value of a quantity with omissions: without friction tangential forces are 0.
+/// The value of a quantity in a scene with omissions: tangential force and moment are 0 if friction is left out, not unknown.
 pub fn without(quantity: Quantity, left_out: &[Omission], value: Result<f64, Lack>) -> Result<f64, Lack> {
     let has_no_friction = left_out.contains(&Omission::Friction);
     match (quantity, value) {

@@ -1,4 +1,4 @@
-//! The curvature of the undeformed distance and of the pressures within an element, which elements do not resolve.
+//! Second differences of the undeformed distance and of the pressures over the contact area: they measure what elements do not resolve.
 
 use std::f64::consts::PI;
 
@@ -7,33 +7,33 @@ use crate::contact::{Outline, Problem, State};
 use crate::direction::{shortest_run, Direction};
 use crate::rectangle::Rectangle;
 
-/// Least rows of the contact area that are sampled. Means over more rows hardly differ.
+/// From this many to twice as many rows of the contact area are sampled. Means over more rows hardly differ.
 const SAMPLED_ROWS: usize = 32;
-/// Largest run that is counted: its error, `(2.5/run)^2`, is 2 %.
+/// Longest run of elements that is counted. The error from its length, `(2.5/run)^2`, is 2 %, and less for longer runs.
 const LONGEST_RUN: usize = 16;
 
 /// Second differences of h and p over the contact area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Curvature {
-    /// `(dx^2 h_xx + dy^2 h_yy)/24`, its mean over the contact area with the weights of a flat punch's pressures. With a layer c,
-    /// of h + c p.
+    /// The bend: the mean of `(dx^2 h_xx + dy^2 h_yy)/24` over the contact area, with the pressures of a flat punch as weights. With a layer of
+    /// compliance c, that of h + c p. A length.
     pub bend: f64,
-    /// The approach minus the lowest h.
+    /// The approach minus the lowest h of the contact area.
     pub depth: f64,
-    /// u = approach - h, its mean with the weights of a flat punch's pressures: the force over dF/d(approach) (Betti).
+    /// The mean of `u = approach - h` with the pressures of a flat punch as weights. By Betti's theorem it is the force over dF/d(approach).
     pub displaced: f64,
-    /// The mean over the rim of `|bend|/run^2`, times the weight of the rim. `run`: the elements of the shorter run
-    /// through an element.
+    /// The mean of `|bend|/run^2` over the elements at the rim, times the weight of the rim. `run` is the length, in elements, of the shorter one of
+    /// the runs of contact along x and y through the element.
     pub short: f64,
-    /// rms of the second differences of p, over that of p.
+    /// rms of the second differences of p, over the rms of p.
     pub pressure: f64,
-    /// Jumps of h next to contact: the sum of `|J|` times the uncertain part of an element.
+    /// The sum over the jumps J of h next to contact of `|J|` times the part of an element in which the jump may lie.
     pub jumps: f64,
-    /// The largest pressure beside a jump of h at which contact ends, or beyond which pressures are less than half: it is singular.
+    /// The largest singular pressure beside a jump of h: one where contact ends at the jump, or pressures beyond it are less than half.
     pub highest_at_jumps: f64,
 }
 
-/// Sums over some elements.
+/// Sums over the sampled elements in contact; those with `rim` over elements at the rim only.
 #[derive(Default)]
 struct Sums {
     bend: f64,
@@ -42,9 +42,13 @@ struct Sums {
     rim_bend: f64,
     rim_h: f64,
     rim_count: f64,
+    /// Sum of `|bend|/run^2`.
     rim_short: f64,
+    /// Sum of the squared second differences of p.
     differences: f64,
+    /// Sum of p^2.
     squares: f64,
+    /// The lowest h.
     lowest: f64,
 }
 
@@ -76,85 +80,86 @@ impl Curvature {
         Curvature { jumps: at_jumps.uncertain, highest_at_jumps: at_jumps.highest, ..of_elements }
     }
 
-    /// The element with the largest pressure `peak`, and the second differences of the pressures there, over the peak: small if elements resolve it.
-    /// None without pressures.
+    /// The element with the largest pressure `peak`, and the negative sum of the second differences of p there over the peak. This is small if
+    /// elements resolve the peak. None without pressures.
     pub fn of_peak(problem: &Problem, state: &State, peak: f64) -> Option<(usize, f64)> {
-        let at = state.p.iter().position(|p| *p == peak && peak > 0.0)?;
+        let top = state.p.iter().position(|p| *p == peak && peak > 0.0)?;
         let (mx, my) = (state.grid.mx, state.grid.my);
         let (x, y) = problem.coefficients.repeats(&state.grid);
-        let (ix, iy) = (at % mx, at / mx);
+        let (ix, iy) = (top % mx, top / mx);
         let beside = |neighbours: [Option<usize>; 2]| {
             2.0 * peak - neighbours.iter().map(|i| i.map_or(0.0, |i| state.p[i])).sum::<f64>()
         };
         let along = if mx > 1 { beside(neighbours(ix, mx, x).map(|n| n.map(|ix| iy * mx + ix))) } else { 0.0 };
         let across = if my > 1 { beside(neighbours(iy, my, y).map(|n| n.map(|iy| iy * mx + ix))) } else { 0.0 };
-        Some((at, (along + across) / peak))
+        Some((top, (along + across) / peak))
     }
 }
 
 impl Sums {
-    /// An element with four neighbours, without a layer.
+    /// Adds element i, which has four neighbours and no layer.
     #[inline]
-    fn add_inner(&mut self, state: &State, directions: &[Direction; 2], at: usize) {
+    fn add_inner(&mut self, state: &State, directions: &[Direction; 2], i: usize) {
         let State { h, p, contact, grid, .. } = state;
-        let (left, right, below, above) = (at - 1, at + 1, at - grid.mx, at + grid.mx);
-        let second = |values: &[f64], a: usize, b: usize| values[a] + values[b] - 2.0 * values[at];
+        let (left, right, below, above) = (i - 1, i + 1, i - grid.mx, i + grid.mx);
+        let second = |values: &[f64], a: usize, b: usize| values[a] + values[b] - 2.0 * values[i];
         let finite = |difference: f64| if difference.is_finite() { difference / 24.0 } else { 0.0 };
         let bend = finite(second(h, left, right)) + finite(second(h, below, above));
         let is_rim = !(contact[left] && contact[right] && contact[below] && contact[above]);
-        let rim = is_rim.then(|| shortest_run(directions, contact, at, LONGEST_RUN));
+        let run = is_rim.then(|| shortest_run(directions, contact, i, LONGEST_RUN));
         let difference = second(p, left, right) + second(p, below, above);
-        self.count_in(state, at, (bend, difference, rim));
+        self.count_in(state, i, (bend, difference, run));
     }
 
-    /// Any element.
+    /// Adds any element.
     fn add(&mut self, problem: &Problem, state: &State, directions: &[Direction; 2], (ix, iy): (usize, usize)) {
         let [x, y] = directions;
-        let at = iy * x.m + ix;
-        let along = neighbours(ix, x.m, x.repeats).map(|n| n.map(|ix| iy * x.m + ix));
-        let across = neighbours(iy, y.m, y.repeats).map(|n| n.map(|iy| iy * x.m + ix));
-        let yields = |i: usize| state.h[i] + problem.layer(i) * state.p[i];
+        let i = iy * x.m + ix;
+        let along = neighbours(ix, x.m, x.is_periodic).map(|n| n.map(|ix| iy * x.m + ix));
+        let across = neighbours(iy, y.m, y.is_periodic).map(|n| n.map(|iy| iy * x.m + ix));
+        // h plus the compression of the layer.
+        let height = |i: usize| state.h[i] + problem.layer(i) * state.p[i];
         let (mut bend, mut difference, mut is_rim) = (0.0, 0.0, false);
         for pair in [along, across] {
             if let [Some(a), Some(b)] = pair {
-                let of_h = yields(a) + yields(b) - 2.0 * yields(at);
+                let of_h = height(a) + height(b) - 2.0 * height(i);
                 bend += if of_h.is_finite() { of_h / 24.0 } else { 0.0 };
                 is_rim |= !state.contact[a] || !state.contact[b];
             }
             if pair != [None, None] {
                 let p = |i: Option<usize>| i.map_or(0.0, |i| state.p[i]);
-                difference += p(pair[0]) + p(pair[1]) - 2.0 * state.p[at];
+                difference += p(pair[0]) + p(pair[1]) - 2.0 * state.p[i];
             }
         }
-        let rim = is_rim.then(|| shortest_run(directions, &state.contact, at, LONGEST_RUN));
-        self.count_in(state, at, (bend, difference, rim));
+        let run = is_rim.then(|| shortest_run(directions, &state.contact, i, LONGEST_RUN));
+        self.count_in(state, i, (bend, difference, run));
     }
 
-    /// `rim`: the shorter run of an element at the rim.
+    /// Adds element i to the sums, with its bend and its second differences of p. `run` is the shorter run through it if it is at the rim, else None.
     #[inline]
-    fn count_in(&mut self, state: &State, at: usize, (bend, difference, rim): (f64, f64, Option<usize>)) {
+    fn count_in(&mut self, state: &State, i: usize, (bend, difference, run): (f64, f64, Option<usize>)) {
         self.bend += bend;
-        self.h += state.h[at];
+        self.h += state.h[i];
         self.count += 1.0;
-        if let Some(run) = rim {
+        if let Some(run) = run {
             self.rim_bend += bend;
             self.rim_short += bend.abs() / (run * run) as f64;
-            self.rim_h += state.h[at];
+            self.rim_h += state.h[i];
             self.rim_count += 1.0;
         }
         self.differences += difference * difference;
-        self.squares += state.p[at] * state.p[at];
-        self.lowest = self.lowest.min(state.h[at]);
+        self.squares += state.p[i] * state.p[i];
+        self.lowest = self.lowest.min(state.h[i]);
     }
 
-    /// Subtracts the contribution of jumps to the bends of adjacent elements.
+    /// Subtracts what jumps of h contribute to the bends of elements at the rim: a jump is no curvature.
     fn without_jumps(&mut self, [bend, short]: [f64; 2]) {
         self.bend -= bend;
         self.rim_bend -= bend;
         self.rim_short = (self.rim_short - short).max(0.0);
     }
 
-    /// Means over the area and over the rim, with `of_area` as the weight of the area.
+    /// The curvature from the means over the area, with the weight `of_area`, and over the rim, with the weight `1 - of_area`.
     fn curvature(&self, approach: f64, of_area: f64) -> Curvature {
         let weighted = |sum: f64, rim: f64| {
             let mean = sum / self.count.max(1.0);
@@ -174,16 +179,23 @@ impl Sums {
     }
 }
 
-/// The weight of the mean over the area against that over the rim, so that both together give the mean with the pressures of a flat punch.
+/// The weight w of the mean over the area: w times that mean plus 1 - w times the mean over the rim approximates the mean with the pressures of a
+/// flat punch as weights.
 ///
-/// A flat punch presses most at its rim. For `h = r^n` its weights give n k, the mean over the area gives 2 n and that over the rim n^2, with
-/// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: weights of two thirds and one third are right to a tenth up to n = 10. Many places of contact
-/// hardly interact. The force of a flat punch on each is proportional to its width, not its area. The mean over the rims has these weights. The mean
-/// over the area is divided by the square root of the number of places.
+/// *A half-space.* A flat punch presses most at its rim. On a circle the Laplacian of `h = r^n` has these means, with
+/// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`:
 ///
-/// With two periods the punch's pressure is the more uniform, the more of the period is in contact. Strips that fill a part c of the period have the
-/// pressures `cos(pi x)/sqrt(k^2 - sin^2(pi x))`, k = sin(pi c/2) (Westergaard 1939). For a wave `2 sin^2(pi x)` their mean is k^2, that over the
-/// area `m = 1 - sin(pi c)/(pi c)`, and that over the rim 2 k^2: the weight `k^2/(2 k^2 - m)` grows from three quarters to 1.
+/// | mean | with the punch's pressures | over the area | over the rim |
+/// |---|---|---|---|
+/// | | n k | 2 n | n^2 |
+///
+/// So w = 2/3 is correct to a tenth up to n = 10. Many spots of contact hardly interact. The force of a flat punch on each is proportional to the
+/// width of the spot, not to its area. The mean over all rims has these weights already. For the mean over the area, w is divided by the square root
+/// of the number of spots.
+///
+/// *Two periods.* The more of the period is in contact, the more uniform is the punch's pressure. Strips that fill a part c of the period have the
+/// pressures `cos(pi x)/sqrt(k^2 - sin^2(pi x))` with k = sin(pi c/2) (Westergaard 1939). For a wave `2 sin^2(pi x)` the mean with these weights is
+/// k^2, that over the area is `m = 1 - sin(pi c)/(pi c)`, and that over the rim is 2 k^2. Hence w = `k^2/(2 k^2 - m)`, which grows from 3/4 to 1.
 fn area_weight(problem: &Problem, state: &State, outline: &Outline) -> f64 {
     let (grid, count) = (&state.grid, state.contact_count());
     let repeats = problem.coefficients.repeats(grid);
@@ -194,9 +206,9 @@ fn area_weight(problem: &Problem, state: &State, outline: &Outline) -> f64 {
     let filled = PI * count as f64 / grid.len() as f64;
     let (k_squared, m) = ((0.5 * filled).sin().powi(2), 1.0 - filled.sin() / filled);
     let of_strips = if count > 0 { k_squared / (2.0 * k_squared - m) } else { 0.75 };
-    // The weight of strips grows from three quarters to 1. Other weights approach 1 by the same fraction of their distance.
-    let of_places = (2.0 / 3.0 + outline.straight_part() / 12.0) / scatter;
-    of_places + (1.0 - of_places) * (4.0 * of_strips - 3.0)
+    // The weight of strips has gone from 3/4 towards 1 by this part: 4 w - 3. That of spots goes towards 1 by the same part.
+    let of_spots = (2.0 / 3.0 + outline.straight_part() / 12.0) / scatter;
+    of_spots + (1.0 - of_spots) * (4.0 * of_strips - 3.0)
 }
 
 /// Sums over the jumps of h next to contact.
@@ -204,14 +216,16 @@ fn area_weight(problem: &Problem, state: &State, outline: &Outline) -> f64 {
 struct AtJumps {
     /// See [`Curvature::jumps`].
     uncertain: f64,
-    /// The contributions to the second differences of h at the rim: as they are, and over the squared elements of the run.
+    /// What the jumps contribute to the second differences of h at the rim.
     bend: f64,
+    /// The same contributions, each absolute and divided by the squared length of the run.
     short: f64,
     /// See [`Curvature::highest_at_jumps`].
     highest: f64,
 }
 
 impl AtJumps {
+    /// Sums over all jumps of h with contact on at least one side.
     fn of(problem: &Problem, state: &State, repeats: (bool, bool)) -> AtJumps {
         let (grid, contact, directions) = (&state.grid, &state.contact, Direction::both(&state.grid, repeats));
         let mut sums = AtJumps::default();
@@ -222,7 +236,7 @@ impl AtJumps {
             if less < 0.5 * more {
                 sums.highest = sums.highest.max(more);
             }
-            // Next to a jump within contact the second differences have opposite signs.
+            // Within contact the second differences on both sides of a jump cancel. At the rim only one side is in contact.
             if contact[i] != contact[j] {
                 let (inside, up) = if contact[i] { (i, height) } else { (j, -height) };
                 let run = shortest_run(&directions, contact, inside, LONGEST_RUN);
@@ -238,7 +252,7 @@ impl AtJumps {
     }
 }
 
-/// The elements before and behind element `i` of `m`; none beyond an end without a period.
+/// The neighbours of element `i` in a line of `m` elements; None beyond an end without a period. A line of one element has none.
 fn neighbours(i: usize, m: usize, repeats: bool) -> [Option<usize>; 2] {
     match (i, repeats && m > 1) {
         (_, _) if m == 1 => [None, None],

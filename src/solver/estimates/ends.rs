@@ -1,28 +1,30 @@
-//! The effect of the position of a surface's end within the contact.
+//! Errors from ends of the surface within the contact, whose exact position the grid does not know.
 //!
-//! An edge of the surface lies somewhere between two centres of elements. Pressures are singular at the edge:
-//! `p ~ K/sqrt(2 pi s)` at the distance s from it. If the surface ends farther out by t, the approach of a given force
-//! F falls by the energy released (Irwin 1957; Rice 1968):
+//! An edge of the surface lies somewhere between two centres of elements. Pressures are singular at the edge: `p ~ K/sqrt(2 pi s)` at the distance s
+//! from it. If the edge lies farther out by t, energy is released, and the approach of a given force F changes by (Irwin 1957; Rice 1968)
 //!
 //! ```text
 //! F d(approach) = -t integral along the edge of K^2/E*,    K^2 = (pi/2) d p^2
 //! ```
 //!
-//! with the pressure p of the last element, d long across the edge. A layer of compliance c adds `t integral of c p^2`.
-//! The force of a given approach changes by `F d(approach) S/F`, S = dF/d(approach): pressures grow with the approach
-//! as `p S/F` for a flat punch, and for other surfaces nearly so. For the change of another quantity at the edge, such
-//! as tractions, that quantity replaces one of the two factors p.
+//! Here p is the pressure of the last element before the edge, and d the length of that element across the edge. A layer of compliance c adds
+//! `t integral of c p^2`. The force of a given approach changes by S d(approach), S = dF/d(approach). For another quantity at the edge, such as a
+//! traction, that quantity replaces one of the two factors p.
 //!
-//! Along a straight edge parallel to the elements t is at most about half an element. A part of this is the
-//! discretisation error of the singularity. Along an edge with steps most of t cancels. At the border of the grid, and
-//! if the caller's elements are the surface, the edge lies exactly on edges of elements. (Measured, in elements:
-//! straight -0.46 to 0.2, in steps -0.15 to 0.05, on edges of elements -0.15.)
+//! t depends on the edge. Measured values, in elements:
 //!
-//! *Jumps of the coefficients.* Pressures are singular, too, where two patches touch that displace each other less than
-//! themselves, and beside an element whose layer is much softer. Such an edge lies on an edge of elements. It counts as
-//! a part of an end. Between patches with the factor F this part is 1 - F. For a layer it is jump/(jump + c'), where c'
-//! is [`BESIDE_JUMP`] times the compliance of an element and its layer. The larger part counts. A jump is the change of
-//! the compliance beyond the changes beside it. So a slope has no jump.
+//! | edge | t | why |
+//! |---|---|---|
+//! | straight, parallel to the elements | -0.46 to 0.2 | it lies anywhere in half an element, plus the discretisation error of the singularity |
+//! | in steps | -0.15 to 0.05 | most of t cancels along the edge |
+//! | exactly on edges of elements | -0.15 | only the discretisation error of the singularity |
+//!
+//! The last row is that of the border of the grid, and of surfaces that consist of the caller's elements.
+//!
+//! *Jumps of the coefficients.* Pressures are also singular between patches that displace each other less than themselves, and beside an element
+//! whose layer is much softer. The jump lies on an edge of elements. It counts as a part of an end: as 1 - F between patches with the factor F, and
+//! as jump/(jump + c') in a layer, where c' is [`BESIDE_JUMP`] times the compliance of an element and its layer. The larger part counts. The jump of
+//! a layer is the change of its compliance between two elements, beyond the changes beside them; so a slope has no jump.
 
 use std::f64::consts::PI;
 
@@ -30,20 +32,23 @@ use crate::contact::{Problem, State, STRAIGHT};
 use crate::direction::Direction;
 use crate::sums::in_blocks;
 
-/// t in elements: at a straight edge, at an edge with steps, and where the edge lies on edges of elements.
+/// The bound on t, in elements, at a straight edge.
 const STRAIGHT_EDGE: f64 = 0.55;
+/// The bound on t, in elements, at an edge in steps.
 const STEPPED_EDGE: f64 = 0.12;
+/// The bound on t, in elements, at an edge that lies on edges of elements.
 const EXACT_EDGE: f64 = 0.2;
-/// c' of a jump, in compliances of an element and its layer. Measured with balls on two halves, of compliances from 0 | 0.01 to 0 | 10: estimates are
-/// 2 to 5 times the error.
+/// c' of a jump, over the compliance of an element and its layer. On balls pressed on two halves, one without a layer and one with a compliance of
+/// 0.01 to 10, estimates were 2 to 5 times the error.
 const BESIDE_JUMP: f64 = 4.0;
-/// The least part of an end at which the largest pressure grows with each finer grid: of a layer, and between patches.
+/// If a jump of a layer counts as more than this part of an end, the pressure beside it grows with each finer grid.
 const SINGULAR_LAYER: f64 = 0.1;
+/// The same bound between patches.
 const SINGULAR_PATCHES: f64 = 0.015;
-/// Change of a sum over the parts of force and energy: 1 for a flat punch, and up to 1.22 for x^6.
+/// Relative change of a sum over the parts of force and energy in [`beyond_ends`]: 1 for a flat punch, and up to 1.22 for a punch of the shape x^6.
 const SUM_FACTOR: f64 = 1.3;
 
-/// The neighbour of an element.
+/// What lies beyond a side of an element.
 #[derive(Clone, Copy, PartialEq)]
 enum Beside {
     /// The neighbour with this index has a surface.
@@ -54,27 +59,27 @@ enum Beside {
     Border,
 }
 
-/// A side of an element at which pressures end within the contact.
+/// A side of an element in contact at which the surface ends or coefficients jump.
 struct End {
-    /// t in elements.
+    /// t in elements; at a jump times the part of an end as which it counts.
     elements: f64,
-    /// Whether the end lies on an edge of elements.
+    /// Whether the position of the end is known: it lies on an edge of elements.
     is_exact: bool,
     /// Whether the pressures are singular there.
     is_singular: bool,
-    /// The compliance `pi d/(2 E*) + c`; at a jump without c, whose part `c p` is known.
+    /// The compliance `pi d/(2 E*) + c`. At a jump without c, because the layer's displacement `c p` has no error there.
     compliance: f64,
 }
 
 impl End {
-    /// `t (pi d/(2 E*) + c) p` times the area of the element.
+    /// The energy released at the end, without one of the two factors p: `t (pi d/(2 E*) + c) p` times the area of the element.
     fn released(&self, state: &State, i: usize) -> f64 {
         self.elements * self.compliance * state.p[i] * state.grid.element_area()
     }
 }
 
-/// Sum over the sides at which pressures end within the contact: `t (pi d/(2 E*) + c) p` times the area of an element, with the weights
-/// `w(i)` of the elements, in x and in y. A direction of one element has no ends here.
+/// The sum over all ends of `t (pi d/(2 E*) + c) p` times the area of the element, times `weights(i)` of the element i at the end: two sums with two
+/// weights. A direction of one element has no ends here.
 pub fn at_ends(problem: &Problem, state: &State, weights: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
     let mut sums = [0.0; 2];
     each_end(problem, state, |i, end| {
@@ -84,7 +89,7 @@ pub fn at_ends(problem: &Problem, state: &State, weights: impl Fn(usize) -> [f64
     sums
 }
 
-/// The sum of [`at_ends`] with the pressures as weights, and the largest pressure at a singular end.
+/// The sum of [`at_ends`] with p as the weight, and the largest pressure at a singular end.
 pub fn pressures_at_ends(problem: &Problem, state: &State) -> (f64, f64) {
     let (mut sum, mut highest) = (0.0, 0.0_f64);
     each_end(problem, state, |i, end| {
@@ -96,8 +101,8 @@ pub fn pressures_at_ends(problem: &Problem, state: &State) -> (f64, f64) {
     (sum, highest)
 }
 
-/// The relative change of a sum if the surface ends farther out by t: the energy released over the whole one, `(p, u)`, and where pressures are
-/// at their limit their force on the strip over the whole one. Ends on edges of elements change nothing.
+/// The relative change of a sum, such as a force, if the surface ends farther out by t. It is the sum of two parts: the energy released over the
+/// whole energy `(p, u)`, and, where pressures are at their limit, the force on the strip of width t over the whole force. Exact ends change nothing.
 pub fn beyond_ends(problem: &Problem, state: &State) -> f64 {
     let (mut strips, mut released) = (0.0, 0.0);
     each_end(problem, state, |i, end| {
@@ -112,24 +117,24 @@ pub fn beyond_ends(problem: &Problem, state: &State) -> f64 {
         return 0.0;
     }
     let over = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
-    let there = || (0..state.p.len()).filter(|&i| state.touches(i));
-    let force = in_blocks(there().map(|i| state.p[i].abs()));
-    let energy = in_blocks(there().map(|i| state.p[i] * state.u[i]));
+    let in_contact = || (0..state.p.len()).filter(|&i| state.touches(i));
+    let force = in_blocks(in_contact().map(|i| state.p[i].abs()));
+    let energy = in_blocks(in_contact().map(|i| state.p[i] * state.u[i]));
     SUM_FACTOR * (over(strips, force) + over(released, energy))
 }
 
-/// Calls `each(i, end)` for each side at which the surface ends or coefficients jump beside element i of the contact.
+/// Calls `each(i, end)` for each side of an element i in contact at which the surface ends or coefficients jump.
 fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, End)) {
     let grid = &state.grid;
     let directions = Direction::both(grid, problem.coefficients.repeats(grid));
     let sizes = [grid.dx, grid.dy];
     let flexibility = PI / (2.0 * problem.modulus());
     for i in (0..grid.len()).filter(|&i| state.touches(i)) {
-        let place = [i % grid.mx, i / grid.mx];
+        let position = [i % grid.mx, i / grid.mx];
         for k in (0..2).filter(|&k| directions[k].m > 1) {
-            let along = (directions[1 - k], place[1 - k]);
-            for way in [-1, 1] {
-                let side = Side { i, across: directions[k], place: place[k], way };
+            let along = (directions[1 - k], position[1 - k]);
+            for sign in [-1, 1] {
+                let side = Side { i, across: directions[k], number: position[k], sign };
                 if let Some(end) = side.end(problem, state, along, flexibility * sizes[k]) {
                     each(i, end);
                 }
@@ -143,20 +148,22 @@ fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, End)) 
 struct Side {
     /// The element.
     i: usize,
-    /// The direction across the side, and the element's place in its line.
+    /// The direction across the side.
     across: Direction,
-    place: usize,
-    /// 1: the side to the next element of the line, -1: to the one before.
-    way: isize,
+    /// The number of the element in its line across the side.
+    number: usize,
+    /// 1: the side towards the next element of the line, -1: towards the element before.
+    sign: isize,
 }
 
 impl Side {
-    /// The element `steps` steps beyond this side, or, if negative, away from it.
+    /// The element `steps` steps beyond this side; on the other side of element i if `steps` is negative. None beyond the border of the grid.
     fn beyond(&self, steps: isize) -> Option<usize> {
-        let at = self.across.at(self.place as isize + self.way * steps);
-        at.map(|at| self.i + at - self.place * self.across.step)
+        let offset = self.across.offset(self.number as isize + self.sign * steps);
+        offset.map(|offset| self.i + offset - self.number * self.across.step)
     }
 
+    /// What lies beyond this side.
     fn beside(&self, state: &State) -> Beside {
         match self.beyond(1) {
             None => Beside::Border,
@@ -165,7 +172,8 @@ impl Side {
         }
     }
 
-    /// The end at this side. `compliance` is that of a side of the element, and `along` the line along the side, with the element's place.
+    /// The end at this side, if there is one. `compliance` is `pi d/(2 E*)`. `along` is the direction along the side, and the number of the element
+    /// in its line in that direction.
     fn end(&self, problem: &Problem, state: &State, along: (Direction, usize), compliance: f64) -> Option<End> {
         let (elements, is_exact) = match self.beside(state) {
             Beside::Surface(j) => return self.jump(problem, state, j, compliance),
@@ -177,7 +185,7 @@ impl Side {
         Some(End { elements, is_exact, is_singular: true, compliance: compliance + problem.layer(self.i) })
     }
 
-    /// The jump of the coefficients to the neighbour j, if there is one.
+    /// The jump of the coefficients from this element to its neighbour j, as an end. None without a jump, or if j is not in contact.
     fn jump(&self, problem: &Problem, state: &State, j: usize, compliance: f64) -> Option<End> {
         if !problem.coefficients.may_jump() || !state.touches(j) {
             return None;
@@ -190,26 +198,28 @@ impl Side {
         (part > 0.0).then_some(End { elements: EXACT_EDGE * part, is_exact: true, is_singular, compliance })
     }
 
-    /// The jump of the layer's compliance from this element to the softer neighbour j, or 0.
+    /// The jump of the layer's compliance from this element to its neighbour j; 0 unless j is softer.
     fn softer(&self, problem: &Problem, j: usize) -> f64 {
         let change = |from: Option<usize>, to: Option<usize>| match (from, to) {
             (Some(from), Some(to)) => problem.layer(to) - problem.layer(from),
             _ => 0.0,
         };
-        // A change back belongs to a single line of elements, or to noise: half of it counts.
+        // A change beside it in the opposite direction belongs to a single line of other compliance, or to noise. Half of such a change is
+        // subtracted.
         let counted = |change: f64| if change < 0.0 { -0.5 * change } else { change };
-        let (before, behind) = (change(self.beyond(-1), Some(self.i)), change(Some(j), self.beyond(2)));
-        (change(Some(self.i), Some(j)) - counted(before).max(counted(behind))).max(0.0)
+        let (before, after) = (change(self.beyond(-1), Some(self.i)), change(Some(j), self.beyond(2)));
+        (change(Some(self.i), Some(j)) - counted(before).max(counted(after))).max(0.0)
     }
 
-    /// Whether this edge continues along a line, as a straight piece of the [outline](super::Outline) does.
-    fn is_straight(&self, state: &State, (along, place): (Direction, usize)) -> bool {
-        let same = |n: usize| {
-            let i = self.i + n * along.step - place * along.step;
+    /// Whether the end of the surface at this side continues straight along enough elements, as a straight piece of the [outline](super::Outline)
+    /// does.
+    fn is_straight(&self, state: &State, (along, number): (Direction, usize)) -> bool {
+        let continues = |n: usize| {
+            let i = self.i + n * along.step - number * along.step;
             state.touches(i) && Side { i, ..*self }.beside(state) == Beside::Hole
         };
-        let before = (0..place).rev().take(STRAIGHT).take_while(|&n| same(n)).count();
-        let behind = (place + 1..along.m).take(STRAIGHT).take_while(|&n| same(n)).count();
-        before + 1 + behind >= STRAIGHT.min(along.m)
+        let before = (0..number).rev().take(STRAIGHT).take_while(|&n| continues(n)).count();
+        let after = (number + 1..along.m).take(STRAIGHT).take_while(|&n| continues(n)).count();
+        before + 1 + after >= STRAIGHT.min(along.m)
     }
 }

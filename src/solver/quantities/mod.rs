@@ -1,7 +1,7 @@
-//! Quantities of a result: their values on one grid, and their errors from several.
+//! Quantities of a result: their values on one grid, and their errors.
 //!
-//! Forces, pressures and areas have estimates from one grid (module `estimates`). All other quantities are compared on grids of twice and
-//! four times the elements ([`Course`]).
+//! Force, largest pressure and contact area have error estimates from one grid (module `estimates`). The errors of all other quantities follow from
+//! their values on a sequence of grids, each with twice the elements of the one before in both directions ([`Course`]).
 
 mod course;
 mod deepest;
@@ -17,7 +17,7 @@ pub use values::{values, Lack};
 use crate::solver::numbered::numbered;
 
 numbered! {
-    /// A quantity that has an accuracy and a price.
+    /// A quantity of a result for which a caller can ask accuracy and cost.
     Quantity {
         /// The force, or the approach if the force is prescribed.
         Force: "force",
@@ -29,13 +29,13 @@ numbered! {
         MeanGap: "mean_gap",
         /// dF/d approach, at fixed contact area.
         Stiffness: "stiffness",
-        /// The length of the tangential force.
+        /// The absolute value of the tangential force.
         TangentialForce: "tangential_force",
-        /// The length of the creepage, in the directions of prescribed force.
+        /// The absolute value of the creepage, over the directions in which the force is prescribed.
         Creepage: "creepage",
         /// The moment of the tractions about the spin centre.
         SpinMoment: "spin_moment",
-        /// The area of stick.
+        /// The area of the elements that stick.
         StickArea: "stick_area",
         /// The largest von Mises stress in both bodies.
         MaxVonMises: "max_von_mises",
@@ -47,20 +47,22 @@ numbered! {
 }
 
 impl Quantity {
-    /// Whether its error is estimated from one grid.
+    /// Whether the error of the quantity is estimated from one grid.
     pub fn has_estimate(self) -> bool {
         matches!(self, Quantity::Force | Quantity::MaxPressure | Quantity::ContactArea)
     }
 
-    /// Whether it is a sum of whole elements.
+    /// Whether the quantity is an area, which counts whole elements.
     pub fn is_area(self) -> bool {
         matches!(self, Quantity::ContactArea | Quantity::StickArea)
     }
 
-    /// The least elements across the contact, in the direction with fewer, for a valid estimate. Measured on balls, ellipses, cones, two
-    /// balls, tori, superellipsoids, blunt rollers and punches anywhere between the elements: with these, at most 5 % of the estimates are
-    /// below the error, and none is below a third of it (docs/notes/2026-11-accuracy.md). Areas jump by whole rows of elements. If an error
-    /// follows from several grids, the coarsest has a quarter of these elements.
+    /// The least number of elements across the contact, in the direction with fewer of them, for a valid estimate.
+    ///
+    /// The numbers were measured on balls, ellipses, cones, pairs of balls, tori, superellipsoids, blunt rollers and punches at any position between
+    /// the elements: with so many elements, at most 5 % of the estimates are below the error, and none is below a third of the error
+    /// (docs/notes/2026-11-accuracy.md). Areas need more elements, because they change by whole rows of them. If an error follows from several grids,
+    /// the coarsest of these has a quarter of the elements.
     pub fn enough_across(self) -> usize {
         match self {
             Quantity::Force => 6,
@@ -70,18 +72,18 @@ impl Quantity {
         }
     }
 
-    /// Whether it is a quantity of the tangential problem.
+    /// Whether the quantity is one of the tangential problem.
     pub fn is_tangential(self) -> bool {
         use Quantity::{Creepage, SpinMoment, StickArea, TangentialForce};
         matches!(self, TangentialForce | Creepage | SpinMoment | StickArea)
     }
 
-    /// Whether it is a largest stress, or its depth.
+    /// Whether the quantity is a largest stress, or the depth of one.
     pub fn is_stress(self) -> bool {
         matches!(self, Quantity::MaxVonMises | Quantity::VonMisesDepth | Quantity::MaxShear)
     }
 
-    /// Whether it follows from single pressures, not from sums of them.
+    /// Whether the quantity depends on single pressures, not on sums of them.
     pub fn is_local(self) -> bool {
         self == Quantity::MaxPressure || self.is_stress()
     }

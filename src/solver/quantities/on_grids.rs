@@ -1,4 +1,4 @@
-//! Quantities of a scene on its grid and on coarser ones, with their errors: the ledger of all quantities.
+//! The ledger of quantities: their values on the scene's grid and on coarser grids, with their errors.
 
 use std::time::Instant;
 
@@ -8,53 +8,55 @@ use crate::grid::Grid;
 use crate::scene::{scaled, Regridded, Scene};
 use crate::solver::{Asked, Options, Outcome, Progress, ProgressCallback, Report, Solver};
 
-/// One quantity on one grid.
+/// The value and the error of one quantity on one grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuantityRow {
     /// The quantity.
     pub quantity: Quantity,
     /// The grid.
     pub grid: Grid,
-    /// The value, if there is one.
+    /// The value; None if there is none.
     pub value: Option<f64>,
-    /// The error of the value, if known.
+    /// The estimated error of the value, in its unit; None if unknown.
     pub error: Option<f64>,
-    /// Why value or error is unknown.
+    /// Why value or error is unknown; None if both are known.
     pub lack: Option<Lack>,
-    /// Seconds of set-up and solve of the grid, the same for all its quantities; stresses and stiffness not included.
+    /// Seconds of set-up and solve on this grid, the same for all quantities. Computations of stresses and of the stiffness are not included.
     pub seconds: f64,
-    /// Products of the grid, in work units.
+    /// Products of the solve on this grid, in work units.
     pub work_units: f64,
 }
 
-/// A solved grid.
+/// The solve on one grid, and the values of quantities.
 pub struct OnGrid {
     /// The grid.
     pub grid: Grid,
     /// The outcome of the solve.
     pub outcome: Outcome,
-    /// The values of the wanted quantities, in their order.
+    /// The value of each wanted quantity, or why there is none.
     pub values: Vec<std::result::Result<Value, Lack>>,
-    /// Errors from this grid alone.
+    /// The error of each wanted quantity, as estimated from this grid alone.
     pub estimates: Vec<Option<f64>>,
-    /// Whether nothing touches.
+    /// Whether the solve converged without contact or attraction.
     pub is_apart: bool,
-    /// Whether one such grid has no estimates: a limit is reached, or bodies attract.
+    /// Whether a single grid has no estimates in this scene: elements are at their pressure limit, or bodies attract.
     pub lacks_estimates: bool,
-    /// The relative residual.
+    /// The larger of the relative residuals of the normal and the tangential problem.
     pub residual: f64,
-    /// Seconds, and the part of the set-up.
+    /// Seconds of set-up and solve.
     pub seconds: f64,
+    /// Seconds of the set-up, which `seconds` contain.
     pub setup_seconds: f64,
-    /// Products, in work units, and those of the tangential problem among them.
+    /// Products of the normal and the tangential problem, in work units.
     pub work_units: f64,
+    /// Products of the tangential problem, which `work_units` contain.
     pub tangential: f64,
     /// Bytes of the grid's solver.
     pub bytes: u64,
 }
 
 impl OnGrid {
-    /// Solves a scene and takes the values.
+    /// Solves a scene on its grid, and computes the wanted values.
     pub fn solve(
         scene: &Scene<'_>,
         options: &Options,
@@ -90,7 +92,7 @@ impl OnGrid {
         })
     }
 
-    /// A grid on which the scene is refused, without values.
+    /// The record of a grid on which the scene is refused: `wanted` quantities without values.
     fn refused(grid: Grid, wanted: usize) -> OnGrid {
         OnGrid {
             grid,
@@ -108,14 +110,15 @@ impl OnGrid {
         }
     }
 
-    /// Whether the elements resolve the peak of the pressure, if there are estimates.
+    /// Whether the elements resolve the peak of the pressure: the largest pressure has an estimate. Also true if it is not wanted, or if nothing has
+    /// estimates.
     pub fn has_peak(&self, wanted: &[Quantity]) -> bool {
-        let at = wanted.iter().position(|quantity| *quantity == Quantity::MaxPressure);
-        self.lacks_estimates || at.is_none_or(|at| self.estimates[at].is_some())
+        let index = wanted.iter().position(|quantity| *quantity == Quantity::MaxPressure);
+        self.lacks_estimates || index.is_none_or(|index| self.estimates[index].is_some())
     }
 }
 
-/// The error of a quantity in a report.
+/// The estimated error of a quantity in a report; None if it has none.
 fn estimate(report: &Report, quantity: Quantity) -> Option<f64> {
     match quantity {
         Quantity::Force => report.error.force,
@@ -125,14 +128,18 @@ fn estimate(report: &Report, quantity: Quantity) -> Option<f64> {
     }
 }
 
-/// The values of `wanted` on the grid of the scene and on `coarser` grids, each with half the elements of the next in both directions. The coarsest
-/// comes first, with one row for each grid and quantity. Each grid is solved without a guess. Errors of force, largest pressure and area are the
-/// estimates of the report. All others follow from the coarser grids (module `sequence`); the coarsest grid has none. Values of 0 are exact if
-/// nothing touches on the grid of the scene. Otherwise a value of 0 on a coarser grid where nothing touches has no known error.
+/// Computes the values of the `wanted` quantities and their errors, on the grid of the scene and on a number `coarser` of coarser grids. Each of
+/// these has half the elements of the next finer one in both directions. Each grid is solved without a guess. Returns one row for each grid and
+/// quantity, coarsest grid first, and the outcome on the grid of the scene.
+///
+/// - Errors of force, largest pressure and area are the estimates of the report. All other errors follow from the values on this grid and coarser
+///   ones (module `sequence`); on the coarsest grid they are unknown.
+/// - If there is no contact on the grid of the scene, values of 0 are exact. Otherwise a value of 0 on a coarser grid without contact has no known
+///   error.
 ///
 /// # Errors
-/// Those of a solve on the grid of the scene. `Unsupported`: own coefficients, kept tractions, and a fixed contact area. Rows of a coarser grid
-/// that is refused have no values.
+/// Those of a solve on the grid of the scene. `Unsupported`: the caller's influence coefficients, kept tractions, or a given contact area. If the
+/// scene is refused on a coarser grid, this is no error: the rows of that grid have no values.
 pub fn quantities(
     scene: &Scene<'_>,
     options: &Options,
@@ -147,7 +154,7 @@ pub fn quantities(
     let (mut rows, mut worst, mut before, mut is_apart) = (Vec::new(), Outcome::Converged, None, false);
     for doublings in -(coarser as i32)..=0 {
         let grid = scaled(scene, doublings)?;
-        // The grid cannot be coarsened any more.
+        // At one element in both directions halving gives the same grid again.
         if before == Some(grid) {
             continue;
         }
@@ -156,7 +163,7 @@ pub fn quantities(
         let on_this = regridded.as_ref().map_or_else(|| scene.clone(), |regridded| regridded.scene(scene));
         let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
         let found = match OnGrid::solve(&on_this, &options, wanted, watch) {
-            // A coarser grid may be refused where the scene's is not.
+            // Only the refusal of the scene's own grid is an error.
             Err(_) if doublings < 0 => OnGrid::refused(grid, wanted.len()),
             found => found?,
         };
@@ -175,14 +182,14 @@ pub fn quantities(
     Ok((worst, rows))
 }
 
+/// Adds the value of quantity number k on a grid to its course, and makes the row.
 fn row(k: usize, found: &OnGrid, doublings: i32, course: &mut Course) -> QuantityRow {
     let value = found.values[k].ok();
     if let Some(value) = value {
         course.add(doublings, value, found.residual);
     }
-    let falling = value.and_then(|_| course.falling(found.lacks_estimates));
-    let of_sequence = falling.map(|falling| falling.now());
-    // If another grid has contact, the error of this 0 is unknown.
+    let of_sequence = value.and_then(|_| course.error(found.lacks_estimates)).map(|error| error.now());
+    // Finer grids may have contact, so the error of such a 0 is unknown here.
     let is_zero = found.is_apart && value.is_some_and(|value| value.value == 0.0);
     let error = value.and(found.estimates[k]).or(of_sequence).filter(|_| !is_zero);
     let lack = match (found.values[k], error) {
@@ -191,7 +198,7 @@ fn row(k: usize, found: &OnGrid, doublings: i32, course: &mut Course) -> Quantit
         (Ok(_), Some(_)) => None,
         (Ok(_), None) if course.len() < 2 + usize::from(found.lacks_estimates) => Some(Lack::OneGrid),
         (Ok(_), None) if course.is_empty() => Some(Lack::Unsettled),
-        // The report of one grid has no estimate.
+        // Forces, pressures and areas without an estimate are singular or not resolved.
         (Ok(_), None) if course.tells_singular() || course.quantity().has_estimate() => Some(Lack::Singular),
         (Ok(_), None) => Some(Lack::Unsettled),
     };

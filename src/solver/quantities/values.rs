@@ -1,4 +1,4 @@
-//! The values of quantities on one grid.
+//! The values of quantities after a solve on one grid.
 
 use std::time::Instant;
 
@@ -16,9 +16,10 @@ use crate::solver::{Outcome, Report, Solver};
 use crate::stress::{of_scene, MOST_SLENDER};
 use crate::sums::in_blocks;
 
-/// The least error of an area of n elements is this times `sqrt(n)` elements. The outline of a circle of n elements has `3.5 sqrt(n)` elements. Two
-/// grids may agree on them by chance. Stiffnesses that agreed on two grids by chance had relative errors of up to `0.25 / sqrt(n)`.
-const OUTLINE: f64 = 0.3;
+/// An area of n elements has at least the error of `OUTLINE_ERROR sqrt(n)` elements, even if two grids agree on it by chance: the outline of a circle
+/// has `3.5 sqrt(n)` elements. Stiffnesses have at least the relative error `OUTLINE_ERROR/sqrt(n)`; where they agreed on two grids by chance, errors
+/// were up to `0.25/sqrt(n)`.
+const OUTLINE_ERROR: f64 = 0.3;
 
 /// Why a quantity has no value, or its value no error; numbered as in the C ABI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,22 +28,22 @@ pub enum Lack {
     NoFriction = 1,
     /// The scene prescribes the quantity.
     Prescribed,
-    /// An effect of the scene excludes it.
+    /// The quantity is not computed with an effect of the scene.
     Effect,
-    /// There is no contact: the quantity has no value, or the value 0 on a grid coarser than one that touches.
+    /// There is no contact on this grid. The quantity has no value, or it is 0 while a finer grid has contact.
     NoContact,
     /// The value grows from grid to grid: it is infinite, or no grid resolves it.
     Singular,
-    /// One grid alone was solved.
+    /// There is only one grid, but the error follows from several.
     OneGrid,
-    /// A grid was not solved.
+    /// The solve of the grid did not converge, or was refused.
     Unsolved,
-    /// The changes from grid to grid do not decrease yet: convergence is open.
+    /// The changes from grid to grid do not decrease yet, so the error is unknown.
     Unsettled,
 }
 
 impl Quantity {
-    /// Refuses a quantity that the scene has on no grid.
+    /// Refuses a quantity that the scene does not have on any grid.
     pub fn check(self, scene: &Scene<'_>) -> Result<()> {
         let name = self.name();
         match self.lack(scene) {
@@ -59,43 +60,45 @@ impl Quantity {
         }
     }
 
-    /// Why the scene has the quantity on no grid. This function and those below are not inlined. The compiler would move their tests of effects
-    /// out of the loop over quantities. The tests would read unwritten memory for effects that the scene does not name. This is harmless, but
-    /// valgrind reports it.
+    /// Why the scene does not have the quantity on any grid; None if it has.
+    ///
+    /// This function and others of this file are not inlined. Otherwise the compiler moves their tests of effects out of the loop over quantities,
+    /// and reads memory of absent effects, which was never written. This is harmless, but valgrind reports it.
     #[inline(never)]
     fn lack(self, scene: &Scene<'_>) -> Option<Lack> {
         use Quantity::{Creepage, MaxShear, MaxVonMises, SpinMoment, StickArea, TangentialForce, VonMisesDepth};
         match self {
             TangentialForce | Creepage | SpinMoment | StickArea => {
                 let Some(friction) = &scene.friction else { return Some(Lack::NoFriction) };
-                let is_found = friction.has_forces();
+                let has_forces = friction.has_forces();
                 let is_prescribed = match self {
-                    TangentialForce => is_found == [true; 2],
-                    Creepage => is_found == [false; 2],
+                    TangentialForce => has_forces == [true; 2],
+                    Creepage => has_forces == [false; 2],
                     _ => false,
                 };
                 is_prescribed.then_some(Lack::Prescribed)
             }
             MaxVonMises | VonMisesDepth | MaxShear => {
-                let solved = [1, 2].iter().all(|body| of_scene(scene, *body, [None; 3]).is_ok());
-                (!solved || is_too_slender(scene)).then_some(Lack::Effect)
+                let is_solved = [1, 2].iter().all(|body| of_scene(scene, *body, [None; 3]).is_ok());
+                (!is_solved || is_too_slender(scene)).then_some(Lack::Effect)
             }
-            // A stiffness at fixed attraction would not be that of the bodies.
+            // With adhesion the stiffness at fixed attraction differs from that of the bodies.
             Quantity::Stiffness => scene.attraction().map(|_| Lack::Effect),
             _ => None,
         }
     }
 }
 
-/// Whether stresses near the surface are not computed: with two periods and very slender elements, other than those of a line.
+/// Whether stresses near the surface are not computed because the scene has two periods and very slender elements. A single line of elements may be
+/// slender.
 fn is_too_slender(scene: &Scene<'_>) -> bool {
     let Grid { mx, my, dx, dy } = scene.grid;
     let is_line = mx == 1 || my == 1;
     effects::repeats(scene) == (true, true) && !is_line && dx.max(dy) > MOST_SLENDER * dx.min(dy)
 }
 
-/// The values of `wanted` after a solve of `scene`. Stiffness and stresses are computed here, which may cost more than the solve: `watch` is told
-/// of their steps. None: it cancelled.
+/// Returns the values of the `wanted` quantities after a solve of `scene`, each with its reason if there is none. Stiffness and stresses are computed
+/// here, which may take longer than the solve: `watch` is called after each step of these computations. None: `watch` cancelled.
 pub fn values(
     solver: &mut Solver,
     scene: &Scene<'_>,
@@ -104,8 +107,7 @@ pub fn values(
     watch: ProgressCallback<'_>,
 ) -> Result<Option<Vec<std::result::Result<Value, Lack>>>> {
     let began = Instant::now();
-    // The reported progress has no work units, so that callers can distinguish these steps from cycles of the solve. Steps are counted over all
-    // quantities.
+    // Work units are 0 in this progress: by that callers can tell these steps from cycles of the solve. Steps are counted over all quantities.
     let (solved, residual, mut steps) = (report.solve_seconds, report.residual(), 0);
     let watch = &mut |_: &Progress| {
         steps += 1;
@@ -147,8 +149,8 @@ pub fn values(
             _ => tangential(solver, scene, report, *quantity),
         };
         let counted = |value: f64| match quantity {
-            Quantity::StickArea => OUTLINE / (value / scene.grid.element_area()).max(1.0).sqrt(),
-            Quantity::Stiffness => OUTLINE / (report.measures.contact_count.max(1) as f64).sqrt(),
+            Quantity::StickArea => OUTLINE_ERROR / (value / scene.grid.element_area()).max(1.0).sqrt(),
+            Quantity::Stiffness => OUTLINE_ERROR / (report.measures.contact_count.max(1) as f64).sqrt(),
             _ => 0.0,
         };
         values.push(number.map(|value| Value { least: counted(value).max(at_ends), ..Value::from(value) }));
@@ -167,7 +169,7 @@ fn area(solver: &Solver, report: &Report) -> f64 {
     }
 }
 
-/// The mean of the deformed distance; 0 in full contact, where the deformed distance is only the residual.
+/// The mean of the deformed distance over elements with a surface. 0 in full contact, where all deformed distances are residuals.
 fn mean_gap(solver: &Solver) -> f64 {
     let state = solver.state();
     let finite = |i: &usize| state.h[*i].is_finite();
@@ -178,6 +180,7 @@ fn mean_gap(solver: &Solver) -> f64 {
     in_blocks((0..state.h.len()).filter(finite).map(|i| state.deformed_distance(i))) / count.max(1) as f64
 }
 
+/// The stiffness of the last result, which has `contacts` elements in contact. None: `watch` cancelled.
 #[inline(never)]
 fn stiffness(
     solver: &mut Solver,
@@ -186,7 +189,7 @@ fn stiffness(
 ) -> Result<Option<std::result::Result<f64, Lack>>> {
     Ok(Some(match solver.watched_stiffness(Some(watch)) {
         Ok((Outcome::Cancelled, _)) => return Ok(None),
-        // With all pressures at their limit the stiffness is 0.
+        // Without contact there is no stiffness. (With all pressures at their limit there is contact, and the stiffness is 0.)
         Ok((Outcome::Converged, _)) if contacts == 0 => Err(Lack::NoContact),
         Ok((Outcome::Converged, stiffness)) => Ok(stiffness.value),
         Ok(_) => Err(Lack::Unsolved),
@@ -195,6 +198,7 @@ fn stiffness(
     }))
 }
 
+/// A quantity of the tangential problem.
 #[inline(never)]
 fn tangential(
     solver: &Solver,
@@ -204,22 +208,22 @@ fn tangential(
 ) -> std::result::Result<f64, Lack> {
     let found = (&scene.friction, &report.friction, solver.friction());
     let (Some(friction), Some(found), Some(solution)) = found else { return Err(Lack::NoFriction) };
-    let is_found = friction.has_forces();
+    let has_force = friction.has_forces();
     match quantity {
         Quantity::TangentialForce => Ok(found.force[0].hypot(found.force[1])),
         Quantity::Creepage => {
-            let of = |k: usize| if is_found[k] { found.creepage[k] } else { 0.0 };
-            Ok(of(0).hypot(of(1)))
+            let creepage = |k: usize| if has_force[k] { found.creepage[k] } else { 0.0 };
+            Ok(creepage(0).hypot(creepage(1)))
         }
         Quantity::SpinMoment => Ok(found.moment),
         _ => {
-            let sticks = solution.stick_slip.iter().filter(|of| **of == STICK).count();
+            let sticks = solution.stick_slip.iter().filter(|state| **state == STICK).count();
             Ok(sticks as f64 * solver.grid().element_area())
         }
     }
 }
 
-/// The largest stress in both bodies, computed once.
+/// The largest stress in both bodies. It is computed at the first call and then kept in `known`.
 #[inline(never)]
 fn peak(
     of: (&Solver, &Scene<'_>),
@@ -234,6 +238,7 @@ fn peak(
     Ok(*place)
 }
 
+/// Computes the largest stress in both bodies; rigid bodies have none. None: `watch` cancelled.
 #[inline(never)]
 fn peak_of(
     (solver, scene): (&Solver, &Scene<'_>),

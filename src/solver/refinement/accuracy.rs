@@ -1,4 +1,4 @@
-//! The wanted accuracy and its allowed cost.
+//! The accuracy that a caller asks for, and the cost that is allowed for it.
 
 use super::outlook::Outlook;
 use crate::error::{invalid, require, Result};
@@ -10,52 +10,52 @@ use crate::solver::quantities::Quantity;
 pub(super) const MOST_ELEMENTS: u64 = 4096 * 4096;
 /// Most elements of any grid.
 pub(super) const ALL_ELEMENTS: u64 = grid::MOST_ELEMENTS as u64;
-/// Errors below this cannot be estimated: 450 times the machine epsilon.
+/// Relative errors below this, 450 times the machine epsilon, are round-off and cannot be estimated.
 pub(super) const ROUND_OFF: f64 = 1e-13;
 /// Least tolerance of a solve.
 pub const LEAST_TOLERANCE: f64 = 1e-12;
-/// The tolerance relative to the target of the force, and of the largest pressure, so that the residual adds little to the error.
+/// The tolerance of a solve, relative to the target of a sum such as the force. So the residual adds little to the error.
 const TOLERANCE_PER_TARGET: f64 = 0.1;
+/// The tolerance of a solve, relative to the target of the largest pressure or stress.
 const TOLERANCE_PER_PRESSURE: f64 = 0.01;
 
-/// The wanted accuracy, and limits of its cost.
+/// Targets for the relative errors of quantities, and limits on the cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Relative errors of the quantities, by their [numbers](Quantity::number); 0: not wanted.
+    /// The target of each quantity, at the index of its [number](Quantity::number): the largest relative error. 0: the quantity is not wanted.
     pub targets: [f64; Quantity::ALL.len()],
-    /// Seconds for all grids together; 0: no limit. A solve that takes longer than predicted is stopped.
+    /// Most seconds for all grids together; 0: no limit. A solve that runs beyond this limit is stopped.
     pub max_seconds: f64,
-    /// Bytes that the solvers of a grid and of the grid before it may hold together; 0: no limit.
+    /// Most bytes that the solvers of a grid and of the grid before it may hold together; 0: no limit.
     pub max_bytes: u64,
-    /// Elements of a grid; 0: 4096 x 4096.
+    /// Most elements of a grid; 0: 4096 x 4096.
     pub max_elements: u64,
 }
 
 impl Accuracy {
-    /// A target of the force (of the approach when the force is prescribed); no limits but the number of elements.
+    /// A target for the force, or for the approach if the force is prescribed. The only limit is the default number of elements.
     pub fn new(target: f64) -> Accuracy {
         let none = Accuracy { targets: [0.0; Quantity::ALL.len()], max_seconds: 0.0, max_bytes: 0, max_elements: 0 };
         none.with(Quantity::Force, target)
     }
 
-    /// Adds a target of another quantity.
+    /// The same accuracy with a target for another quantity.
     pub fn with(mut self, quantity: Quantity, target: f64) -> Accuracy {
         self.targets[quantity.number()] = target;
         self
     }
 
-    /// The errors of quantities with targets, relative to their targets.
+    /// The predicted errors of the wanted quantities, relative to their targets; None for unknown errors.
     pub(super) fn excesses(&self, outlook: &Outlook) -> Vec<Option<Falling>> {
-        let of =
-            |(quantity, target): (Quantity, f64)| outlook.falling(quantity).and_then(|falling| falling.over(target));
-        self.wanted().map(of).collect()
+        let excess = |(quantity, target): (Quantity, f64)| outlook.error(quantity).and_then(|error| error.over(target));
+        self.wanted().map(excess).collect()
     }
 
-    /// The quantity that is farthest from its target, and its error relative to the target: infinite if it is not known.
+    /// The wanted quantity whose error is largest relative to its target, and this ratio. It is infinite if the error is unknown.
     pub(super) fn farthest(&self, outlook: &Outlook) -> (Quantity, f64) {
-        let of = |excess: Option<Falling>| excess.map_or(f64::INFINITY, |excess| excess.now());
-        let all = self.wanted().zip(self.excesses(outlook)).map(|((quantity, _), excess)| (quantity, of(excess)));
-        all.max_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or((Quantity::Force, 0.0))
+        let now = |excess: Option<Falling>| excess.map_or(f64::INFINITY, |excess| excess.now());
+        let all = self.wanted().zip(self.excesses(outlook)).map(|((quantity, _), excess)| (quantity, now(excess)));
+        all.max_by(|(_, one), (_, other)| one.total_cmp(other)).unwrap_or((Quantity::Force, 0.0))
     }
 
     /// Refuses targets and limits out of range.
@@ -94,24 +94,24 @@ impl Accuracy {
         Ok(())
     }
 
-    /// The targets.
+    /// The wanted quantities and their targets.
     pub(super) fn wanted(&self) -> impl Iterator<Item = (Quantity, f64)> + '_ {
         Quantity::ALL.into_iter().zip(self.targets).filter(|(_, target)| *target > 0.0)
     }
 
-    /// The tolerance that the targets need, at most the caller's.
+    /// The tolerance of the solves: the least one that a target needs, or the caller's tolerance `at_most` if that is less.
     pub(super) fn tolerance(&self, at_most: f64) -> f64 {
-        let of = |(quantity, target): (Quantity, f64)| tolerance_for(quantity, target);
-        self.wanted().map(of).fold(at_most.max(LEAST_TOLERANCE), f64::min)
+        let needed = |(quantity, target): (Quantity, f64)| tolerance_for(quantity, target);
+        self.wanted().map(needed).fold(at_most.max(LEAST_TOLERANCE), f64::min)
     }
 
-    /// Whether more time than `max_seconds` has passed.
+    /// Whether `elapsed` seconds exceed `max_seconds`.
     pub(super) fn is_late(&self, elapsed: f64) -> bool {
         self.max_seconds > 0.0 && elapsed > self.max_seconds
     }
 }
 
-/// Refuses a relative error of 1 or more, which p = 0 has.
+/// Refuses a target that does not lie between 0 and 1. Relative errors of 1 are those of p = 0.
 pub(super) fn require_target(target: f64) -> Result<()> {
     require(
         target > 0.0 && target < 1.0,
@@ -121,7 +121,7 @@ pub(super) fn require_target(target: f64) -> Result<()> {
     )
 }
 
-/// The tolerance at which the residual adds little to an error of this target; at least [`LEAST_TOLERANCE`].
+/// The tolerance at which the residual adds little to an error as large as the target; at least [`LEAST_TOLERANCE`].
 pub(super) fn tolerance_for(quantity: Quantity, target: f64) -> f64 {
     let part = if quantity.is_local() { TOLERANCE_PER_PRESSURE } else { TOLERANCE_PER_TARGET };
     (part * target).max(LEAST_TOLERANCE)

@@ -1,4 +1,4 @@
-//! One row of the price list, computed from samples.
+//! One row of the price list: the predicted cost of one accuracy, from solves on small grids (samples).
 
 use super::accuracy::{tolerance_for, MOST_ELEMENTS, ROUND_OFF};
 use super::sample::Sample;
@@ -9,33 +9,33 @@ use crate::solver::falling::Falling;
 use crate::solver::quantities::Quantity;
 use crate::solver::seconds::{seconds_on, Cost, MOST_PRODUCTS_RATIO};
 
-/// The initial residual of a grid over that of the next coarser grid. A grid starts from the result of the coarser grid. The initial residual comes
-/// from the error of this result at the boundary of contact.
+/// The initial residual of a grid over that of the next coarser grid. Each grid starts from the result of the coarser one, whose error at the
+/// boundary of contact is the initial residual.
 const FIRST_RESIDUAL_RATIO: f64 = 0.35;
 /// The usual growth of tangential products with a doubling, measured on six surfaces (docs/notes/2026-11-accuracy.md).
 const PRODUCTS_GROWTH: f64 = 1.1;
-/// The fewest elements across the contact of a sample that can be extrapolated.
+/// Least number of elements across the contact from which a sample can be extrapolated.
 pub(super) const FEWEST_ACROSS: usize = 12;
 
 /// The reason why an accuracy cannot be reached; numbered as in the C ABI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
-    /// No sufficient grid is known: the quantity is singular, contact is on few elements, nothing touches although the quantity is not 0 then, or no
-    /// grid was solved.
+    /// No sufficient grid is known: the quantity is singular, contact is on few elements, there is no contact although the quantity is not 0 without
+    /// it, or no grid was solved.
     Singular = 1,
     /// The target is below round-off.
     RoundOff,
-    /// It takes more elements than `max_elements`.
+    /// The accuracy takes more elements than `max_elements`.
     Elements,
-    /// It takes more memory than `max_bytes`.
+    /// The accuracy takes more memory than `max_bytes`.
     Memory,
-    /// It takes longer than `max_seconds`.
+    /// The accuracy takes longer than `max_seconds`.
     Time,
-    /// Bodies relax, and the error of the step length alone exceeds the target.
+    /// Bodies relax, and the error from the length of the time step alone exceeds the target.
     Step,
 }
 
-/// Products counted on a grid to a tolerance.
+/// The products of a solve on a grid to a tolerance, counted and not predicted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Counted {
     pub grid: Grid,
@@ -44,6 +44,7 @@ pub(super) struct Counted {
 }
 
 impl Counted {
+    /// Whether the count is that of this grid and tolerance.
     pub fn is_of(&self, grid: &Grid, tolerance: f64) -> bool {
         self.grid == *grid && self.tolerance == tolerance
     }
@@ -52,30 +53,30 @@ impl Counted {
 /// The price of one accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Price {
-    /// The target of the relative error.
+    /// The accuracy: the largest relative error.
     pub target: f64,
-    /// The coarsest sufficient grid by prediction, if it is known.
+    /// The coarsest grid that is predicted to suffice; None if unknown.
     pub grid: Option<Grid>,
-    /// The largest sufficient tolerance.
+    /// The largest tolerance that suffices.
     pub tolerance: f64,
-    /// The larger of the predicted relative error of the grid and the tolerance, if it is known.
+    /// The predicted relative error on this grid, or the tolerance if that is larger; None if unknown.
     pub error: Option<f64>,
-    /// Seconds of set-up and solve with the threads of the options, if they are known.
+    /// Predicted seconds of set-up and solve with the threads of the options; None if unknown.
     pub seconds: Option<f64>,
-    /// Seconds with one thread, if they are known.
+    /// Predicted seconds of set-up and solve with one thread; None if unknown.
     pub seconds_one_thread: Option<f64>,
-    /// Products that the solve takes, in products on its grid; 0: not known.
+    /// Predicted products of the solve, in work units; 0 if unknown.
     pub work_units: f64,
-    /// Bytes held by the solver; 0: not known.
+    /// Predicted bytes held by the solver; 0 if unknown.
     pub bytes: u64,
-    /// Why the accuracy cannot be reached. None if it can.
+    /// Why the accuracy cannot be reached; None if it can.
     pub obstacle: Option<Obstacle>,
-    /// The relative error of the step length on any grid, in addition to `error`. 0 if no body relaxes.
+    /// The relative error from the length of the time step, which is the same on all grids and adds to `error`. 0 if no body relaxes.
     pub time_error: f64,
 }
 
-/// Predicts the doublings from the last sample to the first sufficient grid, and the seconds of one thread to the tolerance of the samples. For an
-/// exact value the grid is that of the scene.
+/// Predicts the number of doublings from the last sample to the coarsest grid that suffices for the target, and the seconds of one thread for a solve
+/// on that grid to the tolerance of the samples. If the value of the last sample is exact, the grid is that of the scene. None if no grid suffices.
 pub(super) fn predict(
     scene: &Scene<'_>,
     samples: &[Sample],
@@ -88,43 +89,51 @@ pub(super) fn predict(
     if last.is_exact() {
         return Some((-last.doublings, seconds(-last.doublings)));
     }
-    let falling = last.falling()?;
+    let error = last.error()?;
     let (least, most) = (-(last.across.ilog2() as i32), (MOST_ELEMENTS as f64).log2() as i32);
-    let does = |k: &i32| {
+    let suffices = |k: &i32| {
         let enough = last.across as f64 * 2f64.powi(*k) >= quantity.enough_across() as f64;
-        enough && error_after(samples, falling, *k) <= target && scaled(scene, last.doublings + k).is_ok()
+        enough && error_after(samples, error, *k) <= target && scaled(scene, last.doublings + k).is_ok()
     };
-    let k = (least..=most).find(does)?;
+    let k = (least..=most).find(suffices)?;
     Some((k, seconds(k)))
 }
 
-/// The relative error `k` doublings after the last sample. A coarser sample has at least its difference from the last one.
-fn error_after(samples: &[Sample], falling: Falling, k: i32) -> f64 {
+/// The relative error `k` doublings after the last sample, whose error is `error`. If there is a coarser sample on that grid (k < 0), its error is at
+/// least its difference from the last sample plus the error of the latter.
+fn error_after(samples: &[Sample], error: Falling, k: i32) -> f64 {
     let Some(last) = samples.last() else { return f64::INFINITY };
     let coarser = samples.iter().find(|sample| k < 0 && sample.doublings == last.doublings + k);
-    let apart = coarser.and_then(|sample| Some(((sample.value()? - last.value()?) / last.value()?).abs()));
-    falling.after(k).max(apart.map_or(0.0, |apart| apart + falling.now()))
+    let difference = coarser.and_then(|sample| Some(((sample.value()? - last.value()?) / last.value()?).abs()));
+    error.after(k).max(difference.map_or(0.0, |difference| difference + error.now()))
 }
 
-/// The cost of a tolerance on the grid after `doublings`: its seconds over those of a solve to the samples' tolerance, and its products. Both come
-/// from the finest sample that is not finer than this grid. On a finer grid the iteration starts closer to the solution.
-fn to(samples: &[Sample], doublings: i32, tolerance: f64) -> (f64, f64) {
-    let at = samples.iter().rposition(|sample| sample.doublings <= doublings).unwrap_or(0);
-    let Some(sample) = samples.get(at) else { return (1.0, 0.0) };
+/// The cost of a solve to a tolerance on the grid after `doublings`: its seconds over those of a solve to the tolerance of the samples, and its
+/// products. Both come from the finest sample that is not finer than this grid.
+///
+/// On a finer grid the iteration starts closer to the solution. So the work to `tolerance` there is that of the sample to a larger residual, the
+/// `equivalent` tolerance.
+fn cost_to(samples: &[Sample], doublings: i32, tolerance: f64) -> (f64, f64) {
+    let index = samples.iter().rposition(|sample| sample.doublings <= doublings).unwrap_or(0);
+    let Some(sample) = samples.get(index) else { return (1.0, 0.0) };
     let finer = (doublings - sample.doublings).max(0);
-    let begins = tolerance / FIRST_RESIDUAL_RATIO.powi(finer);
-    if let Some((part, tangential)) = sample.between(tolerance) {
-        let before = at.checked_sub(1).and_then(|before| samples[before].between(tolerance));
+    let equivalent = tolerance / FIRST_RESIDUAL_RATIO.powi(finer);
+    if let Some((part, tangential)) = sample.with_friction(tolerance) {
+        let of_before = index.checked_sub(1).and_then(|before| samples[before].with_friction(tolerance));
         // The growth between two samples is irregular. The prediction is its geometric mean with the usual growth.
-        let seen = before.filter(|before| before.1 > 0.0).map_or(PRODUCTS_GROWTH, |before| tangential / before.1);
-        let grows = (seen * PRODUCTS_GROWTH).sqrt().clamp(1.0, MOST_PRODUCTS_RATIO);
-        return (part, sample.normal(tolerance, begins) + tangential * grows.powi(finer));
+        let seen = match of_before {
+            Some((_, before)) if before > 0.0 => tangential / before,
+            _ => PRODUCTS_GROWTH,
+        };
+        let growth = (seen * PRODUCTS_GROWTH).sqrt().clamp(1.0, MOST_PRODUCTS_RATIO);
+        return (part, sample.normal_products(tolerance, equivalent) + tangential * growth.powi(finer));
     }
-    let (seconds, products) = sample.to(tolerance, begins);
+    let (seconds, products) = sample.cost_to(tolerance, equivalent);
     (seconds / sample.cost.seconds, products)
 }
 
-/// One row of the price list.
+/// Makes one row of the price list. `counted` are products that need no prediction; `speed_up` is the ratio of the seconds of one thread to those of
+/// the threads of the options.
 pub(super) fn price(
     scene: &Scene<'_>,
     (samples, counted): (&[Sample], &[Counted]),
@@ -149,19 +158,19 @@ pub(super) fn price(
         return Price { obstacle: Some(Obstacle::RoundOff), ..nothing };
     }
     let last = samples.last().filter(|last| last.across >= FEWEST_ACROSS || last.is_exact());
-    let error_of = |last: &Sample| if last.is_exact() { Some(Falling::default()) } else { last.falling() };
-    let Some((last, falling)) = last.and_then(|last| Some((last, error_of(last)?))) else { return nothing };
+    let error_of = |last: &Sample| if last.is_exact() { Some(Falling::default()) } else { last.error() };
+    let Some((last, error)) = last.and_then(|last| Some((last, error_of(last)?))) else { return nothing };
     let Some((k, seconds)) = predict(scene, samples, (quantity, target)) else {
         return Price { obstacle: Some(Obstacle::Elements), ..nothing };
     };
     let Ok(grid) = scaled(scene, last.doublings + k) else { return nothing };
-    let (part, work_units) = to(samples, last.doublings + k, tolerance);
+    let (part, work_units) = cost_to(samples, last.doublings + k, tolerance);
     let work_units = counted.iter().find(|one| one.is_of(&grid, tolerance)).map_or(work_units, |one| one.products);
     let seconds = seconds * part;
     let each = doubling(refines(scene));
     let sample = samples.iter().rfind(|sample| sample.doublings <= last.doublings + k).unwrap_or(&samples[0]);
     let bytes = sample.bytes * each.powi((last.doublings + k - sample.doublings).max(0));
-    // A search holds the solver of the grid before, of half the elements a side or less, unless it ends on its first grid.
+    // A search also holds the solver of the grid before, which has at most half the elements in each direction, unless it ends on its first grid.
     let before = if last.doublings + k > 0 { bytes / each } else { 0.0 };
     let most = if accuracy.max_elements == 0 { MOST_ELEMENTS } else { accuracy.max_elements };
     let obstacles = [
@@ -173,7 +182,7 @@ pub(super) fn price(
     let obstacle = obstacles.into_iter().find(|(is_in_the_way, _)| *is_in_the_way).map(|(_, obstacle)| obstacle);
     Price {
         grid: Some(grid),
-        error: Some(if last.is_exact() { 0.0 } else { error_after(samples, falling, k).max(tolerance) }),
+        error: Some(if last.is_exact() { 0.0 } else { error_after(samples, error, k).max(tolerance) }),
         seconds: Some(seconds / speed_up),
         seconds_one_thread: Some(seconds),
         work_units,

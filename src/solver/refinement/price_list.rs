@@ -1,7 +1,7 @@
-//! The price list: predicted costs of accuracies.
+//! The price list: the predicted cost of several accuracies of one quantity.
 //!
-//! The scene is solved on small grids, the last of which takes a small part of the time of the most expensive accuracy. Errors and seconds are
-//! extrapolated to finer grids: errors by their orders (module `estimates`), seconds by a power of the number of elements.
+//! The scene is solved on small grids, the samples. All samples together take a small part of the time of the most expensive accuracy. Errors and
+//! seconds are extrapolated to finer grids: errors by their orders (module `estimates`), seconds by a power of the number of elements.
 
 use std::time::Instant;
 
@@ -18,31 +18,32 @@ use crate::solver::quantities::Quantity;
 use crate::solver::seconds::NEXT_GRID_RATIO;
 use crate::solver::{Options, Outcome, ProgressCallback};
 
-/// Most seconds of all samples, including those predicted for the next one: SAMPLES_SECONDS, or this share of the
-/// seconds of the most expensive accuracy if that is more.
+/// The samples may take this share of the predicted seconds of the most expensive accuracy, or [`SAMPLES_SECONDS`] if that is more. No sample is
+/// begun that is predicted to exceed this.
 const SAMPLES_SHARE: f64 = 0.014;
+/// The seconds that samples may always take.
 const SAMPLES_SECONDS: f64 = 0.035;
-/// The first sample has from this many to twice as many elements in its longer direction, if the grid can be halved so
-/// often.
+/// The first sample has from this many to twice as many elements in its longer direction, if the scene's grid has at least twice as many.
 const FIRST_SAMPLE: usize = 32;
-/// Lower bound on the cost ratio of a grid with four times the elements.
+/// Lower bound on the ratio of the seconds of a grid to those of a grid with a quarter of the elements.
 const LEAST_COST_RATIO: f64 = 2.0;
 
-/// Elements of a sample beyond which an unresolved contact is accepted. Up to there samples go on for UNKNOWN_SECONDS.
+/// If a sample with more elements does not resolve the contact, no further sample is made.
 const UNRESOLVED_ELEMENTS: f64 = 2e5;
-/// About the most seconds of the samples while no row is known.
+/// While no row is known, samples may take about this many seconds.
 const UNKNOWN_SECONDS: f64 = 2.0;
 /// Most samples.
 const MOST_SAMPLES: usize = 12;
-/// Most seconds for counting the products of small rows.
+/// Most seconds for counting the products of rows with small grids.
 const FOR_COUNTS: f64 = 0.005;
-/// Share of the remaining SAMPLES_SECONDS for repeated timings of a sample.
+/// The part of what remains of [`SAMPLES_SECONDS`] that repeated timings of a sample may take.
 const FOR_TIMES: f64 = 0.5;
 
-/// Predicts the cost of each of the relative errors `targets` of a quantity, from solves on small grids over the rectangle of the scene. Uses
-/// the limits of `accuracy`; a row names the limit that forbids it. `surface` as in [`solve_to_accuracy`](super::solve_to_accuracy). After
-/// a cancel by the surface or by `progress`, which is called after each cycle, the rows hold the results so far. ITERATION_LIMIT, STAGNATED: neither
-/// the grid of the scene nor a coarser one was solved. A quantity that is 0 as nothing touches is exact on the grid of the scene.
+/// Predicts the cost of each of the relative errors `targets` of a quantity, from solves on small grids over the rectangle of the scene.
+///
+/// Of `accuracy` only the limits are used; a row tells which limit forbids it. `surface` is that of [`solve_to_accuracy`](super::solve_to_accuracy).
+/// `progress` is called after each cycle. If one of them cancels, the rows hold the results so far. The outcome is ITERATION_LIMIT or STAGNATED if
+/// neither the grid of the scene nor a coarser one could be solved. If there is no contact, a quantity of 0 is exact on the grid of the scene.
 pub fn cost_of_accuracy(
     scene: &Scene<'_>,
     options: &Options,
@@ -55,21 +56,22 @@ pub fn cost_of_accuracy(
     let mut history = History::of(std::iter::once(quantity), scene);
     let (tolerance, loosest) = tolerances(quantity, targets, options);
     let options = Options { tolerance, estimates: true, ..*options };
-    let one = Options { threads: 1, ..options };
+    let one_thread = Options { threads: 1, ..options };
     let began = Instant::now();
     let (mut samples, mut doublings): (Vec<Sample>, i32) = (Vec::new(), first(scene));
     let list_with = |samples: &[Sample], counted: &[Counted], speed_up: f64| -> Vec<Price> {
-        let one = |target: &f64| price(scene, (samples, counted), accuracy, (quantity, *target), speed_up);
-        targets.iter().map(one).collect()
+        let row = |target: &f64| price(scene, (samples, counted), accuracy, (quantity, *target), speed_up);
+        targets.iter().map(row).collect()
     };
     let list = |samples: &[Sample]| list_with(samples, &[], 1.0);
     let mut budget = Budget::default();
     while samples.len() < MOST_SAMPLES {
         let spare = FOR_TIMES * (SAMPLES_SECONDS - began.elapsed().as_secs_f64());
-        let sample = match Sample::take(scene, &one, (doublings, spare), quantity, (&mut surface, &mut progress))? {
-            Taken::Sample(sample) => sample.carried_on(&mut history),
+        let callbacks = (&mut surface, &mut progress);
+        let sample = match Sample::take(scene, &one_thread, (doublings, spare), quantity, callbacks)? {
+            Taken::Sample(sample) => sample.with_history(&mut history),
             Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples))),
-            // A coarser grid may be refused where the scene's is not.
+            // A grid coarser than the scene's may fail; the next one may not.
             Taken::Unsolved(_) if samples.is_empty() && doublings < 0 => {
                 doublings += 1;
                 continue;
@@ -81,7 +83,7 @@ pub fn cost_of_accuracy(
         samples.push(sample);
         doublings += 1;
         let most = budget.after(&list(&samples));
-        let (loose, left) = (Options { tolerance: loosest, ..one }, most - began.elapsed().as_secs_f64());
+        let (loose, left) = (Options { tolerance: loosest, ..one_thread }, most - began.elapsed().as_secs_f64());
         if loosen(scene, &loose, (&mut samples, left), (&mut surface, &mut progress))? == Outcome::Cancelled {
             return Ok((Outcome::Cancelled, list(&samples)));
         }
@@ -91,7 +93,7 @@ pub fn cost_of_accuracy(
             break;
         }
     }
-    let counted = count(scene, &one, (&samples, &list(&samples)), (&mut surface, &mut progress))?;
+    let counted = count(scene, &one_thread, (&samples, &list(&samples)), (&mut surface, &mut progress))?;
     let Some(counted) = counted else { return Ok((Outcome::Cancelled, list(&samples))) };
     Ok(match speed_up(scene, &options, (&samples, quantity), (&mut surface, &mut progress))? {
         Some(speed_up) => (Outcome::Converged, list_with(&samples, &counted, speed_up)),
@@ -111,36 +113,37 @@ fn check_asked(
     quantity.check(scene)
 }
 
-/// The least of the seconds that samples predicted for the most expensive row so far. Samples of few elements may predict too many.
+/// The seconds that samples may take.
 #[derive(Default)]
 struct Budget {
+    /// The least prediction so far for the seconds of the most expensive row. Samples of few elements may predict too many seconds.
     least: Option<f64>,
 }
 
 impl Budget {
-    /// Most seconds of all samples, after a sample with these rows.
+    /// Most seconds of all samples, after a sample that predicts these rows.
     fn after(&mut self, rows: &[Price]) -> f64 {
-        let had = rows.iter().filter(|price| price.obstacle.is_none()).filter_map(|price| price.seconds);
-        let dearest = had.reduce(f64::max);
-        self.least = self.least.into_iter().chain(dearest).reduce(f64::min);
+        let reachable = rows.iter().filter(|price| price.obstacle.is_none()).filter_map(|price| price.seconds);
+        let most_expensive = reachable.reduce(f64::max);
+        self.least = self.least.into_iter().chain(most_expensive).reduce(f64::min);
         SAMPLES_SECONDS.max(SAMPLES_SHARE * self.least.unwrap_or(0.0))
     }
 }
 
-/// Whether the samples determine the rows, or the last one is too large for another.
+/// Whether the samples suffice to predict the rows, or the last one is so large that no further one is made.
 fn is_known(samples: &[Sample], is_believed: bool) -> bool {
     let Some(last) = samples.last() else { return false };
-    // Without estimates from one grid, errors need three grids, or four if two changes happen to be equal. A search needs as many.
-    let has_error = last.falling().is_some() && is_believed || samples.len() > 3;
+    // Errors that follow from several grids need three of them, or four if the first two changes are equal by chance.
+    let has_error = last.error().is_some() && is_believed || samples.len() > 3;
     last.across >= FEWEST_ACROSS && has_error || last.cost.elements > UNRESOLVED_ELEMENTS
 }
 
-/// Whether nothing touches on so many grids that a search would end.
+/// Whether there is no contact on so many grids that a search for an accuracy would end.
 fn is_apart(samples: &[Sample]) -> bool {
     samples.iter().rev().take_while(|sample| sample.across == 0 && sample.doublings >= 0).count() >= MOST_WITHOUT
 }
 
-/// Tolerances of solves for the least and the greatest target.
+/// The tolerances that suffice for the least and for the greatest target.
 fn tolerances(quantity: Quantity, targets: &[f64], options: &Options) -> (f64, f64) {
     let least = targets.iter().copied().fold(f64::INFINITY, f64::min);
     let tolerance = tolerance_for(quantity, least).min(options.tolerance.max(LEAST_TOLERANCE));
@@ -148,7 +151,8 @@ fn tolerances(quantity: Quantity, targets: &[f64], options: &Options) -> (f64, f
     (tolerance, tolerance_for(quantity, greatest).max(tolerance))
 }
 
-/// Solves the last sample to a loose tolerance if that takes at most the seconds `left`; else it takes the cost of the sample before.
+/// Solves the last sample again to a loose tolerance, to learn the cost of that. If a solve takes more than the seconds `left`, the relative cost of
+/// the sample before is taken instead.
 fn loosen(
     scene: &Scene<'_>,
     options: &Options,
@@ -160,7 +164,7 @@ fn loosen(
     last.loosen(scene, options, before, callbacks)
 }
 
-/// The speed-up by more threads. None: cancelled by a callback.
+/// Measures the speed-up by the threads of the options, on the last sample that takes little time. None: a callback cancelled.
 fn speed_up(
     scene: &Scene<'_>,
     options: &Options,
@@ -176,7 +180,7 @@ fn speed_up(
     })
 }
 
-/// The products of rows whose grids take little time, from solves. None: cancelled by a callback.
+/// Counts the products of those rows whose grids take little time, by solving them. None: a callback cancelled.
 fn count(
     scene: &Scene<'_>,
     options: &Options,
@@ -204,7 +208,7 @@ fn count(
     Ok(Some(counted))
 }
 
-/// Doublings from the scene's grid to the first sample; negative: halvings.
+/// The doublings from the scene's grid to the first sample; negative numbers are halvings.
 fn first(scene: &Scene<'_>) -> i32 {
     let most = scene.grid.mx.max(scene.grid.my);
     let halves = (0..).take_while(|k| most >> k >= 2 * FIRST_SAMPLE && scaled(scene, -(k + 1)).is_ok());
