@@ -76,6 +76,12 @@ fn what_converges_slowly_is_covered() {
         let least = if last == 1 { 0.4 } else { 0.99 };
         assert!((least * truth..1.01 * truth).contains(&falling.now()), "{last}: {falling:?} of {truth}");
     }
+    // Between grids that are several doublings apart the ratio is that from the middle of a change to the middle of the next.
+    for doublings in [&[0, 2, 4][..], &[0, 2, 3], &[0, 1, 3], &[0, 3, 4]] {
+        let found = of(doublings, |h| 1.0 - h.sqrt()).error_if_slow(0.75).expect("an error").now();
+        let truth = 0.5f64.powi(*doublings.last().expect("a grid")).sqrt();
+        assert!((0.9 * truth..1.1 * truth).contains(&found), "{doublings:?}: {found} of {truth}");
+    }
     // If changes do not fall, the error is three times the last change.
     let grows = of(&[0, 1, 2], |h| -h.log2());
     assert!(grows.error().is_none());

@@ -13,12 +13,13 @@ use crate::solver::falling::Falling;
 const SINGULAR_RATIO: f64 = 0.8;
 /// The largest ratio of successive changes, one doubling apart, that counts as second order. Exact second order has 1/4; half as much is added
 /// because changes are irregular.
-const SECOND_ORDER_RATIO: f64 = 0.38;
+const MOST_OF_SECOND_ORDER: f64 = 0.38;
 /// Factor on an error of second order, because only three grids indicate this order.
 const MARGIN: f64 = 2.0;
 
-/// The ratio of successive changes, one doubling apart, of an error of first order.
+/// The ratios of successive changes, one doubling apart, of errors of first and of second order.
 const FIRST_ORDER_RATIO: f64 = 0.5;
+const SECOND_ORDER_RATIO: f64 = 0.25;
 
 /// Values of one quantity on grids of the same rectangle, coarsest first.
 #[derive(Clone, Debug, Default)]
@@ -70,17 +71,17 @@ impl Sequence {
         let (newest, before) = (changes.last()?, changes.iter().rev().nth(1));
         let hidden = last.residual_error;
         let Some(before) = before else {
-            return Some(Falling { by_two: newest.error_at_first_order(), hidden, ..Falling::default() });
+            return Some(Falling { by_two: newest.error_at(FIRST_ORDER_RATIO), hidden, ..Falling::default() });
         };
         if is_singular(&changes, hidden) {
             return None;
         }
         let predicted = before.error_after(newest);
-        let found = newest.error_at_first_order();
-        if found <= 2.0 * SECOND_ORDER_RATIO * predicted {
+        let found = newest.error_at(FIRST_ORDER_RATIO);
+        if found <= 2.0 * MOST_OF_SECOND_ORDER * predicted {
             // As at first order, the change before the last one gives a lower bound.
-            let of_before = before.error_at_second_order() * 0.25_f64.powi(newest.doublings);
-            let second = newest.error_at_second_order().max(of_before);
+            let of_before = before.error_at(SECOND_ORDER_RATIO) * SECOND_ORDER_RATIO.powi(newest.doublings);
+            let second = newest.error_at(SECOND_ORDER_RATIO).max(of_before);
             return Some(Falling { by_four: MARGIN * second, hidden, ..Falling::default() });
         }
         Some(Falling { by_two: found.max(predicted), hidden, ..Falling::default() })
@@ -90,25 +91,27 @@ impl Sequence {
     pub fn error_of_first_order(&self) -> Option<Falling> {
         let error = self.error()?;
         let [.., before, newest] = self.changes()[..] else { return Some(error) };
-        let by_two = newest.error_at_first_order().max(before.error_after(&newest));
+        let by_two = newest.error_at(FIRST_ORDER_RATIO).max(before.error_after(&newest));
         Some(Falling { by_two, by_four: 0.0, ..error })
     }
 
     /// The error of a quantity that is known to converge, even if its changes do not decrease yet: the rest of a geometric series of changes. The
-    /// last change counts as at least half of the change before it. Changes are taken per doubling, and their ratio is clamped between 1/2 and
-    /// `ratio`. If the last grids are one doubling apart, this is the ratio of the series; if they are farther apart, it is an approximation.
+    /// ratio of the series, from one doubling to the next, follows from the last two changes. It is clamped between 1/2 and `ratio`. The last change
+    /// counts as at least half of the change before it.
     pub fn error_if_slow(&self, ratio: f64) -> Option<Falling> {
-        let per_doubling: Vec<f64> = self.changes().iter().map(|change| change.per_doubling().abs()).collect();
-        let (last, ratio_found) = match per_doubling[..] {
+        let by_two = match self.changes()[..] {
             [] => return None,
-            [only] => (only, FIRST_ORDER_RATIO),
-            [.., before, newest] if before > 0.0 => {
-                (newest.max(FIRST_ORDER_RATIO * before), (newest / before).clamp(FIRST_ORDER_RATIO, ratio))
+            [only] => only.error_at(FIRST_ORDER_RATIO),
+            [.., before, newest] if before.by != 0.0 => {
+                let (of_newest, of_before) = (newest.per_doubling().abs(), before.per_doubling().abs());
+                // From the middle of one change to that of the next.
+                let apart = 0.5 * f64::from(before.doublings + newest.doublings);
+                let found = (of_newest / of_before).powf(1.0 / apart).clamp(FIRST_ORDER_RATIO, ratio);
+                newest.error_at(found).max(before.error_at(found) * FIRST_ORDER_RATIO.powi(newest.doublings))
             }
-            [.., newest] => (newest, ratio),
+            [.., newest] => newest.error_at(ratio),
         };
-        let hidden = self.residual_error()?;
-        Some(Falling { by_two: last * ratio_found / (1.0 - ratio_found), hidden, ..Falling::default() })
+        Some(Falling { by_two, hidden: self.residual_error()?, ..Falling::default() })
     }
 
     /// The changes from grid to grid.
@@ -131,19 +134,14 @@ struct Change {
 }
 
 impl Change {
-    /// The error that remains on the finer grid, if it is of first order.
-    fn error_at_first_order(&self) -> f64 {
-        self.by.abs() / (2f64.powi(self.doublings) - 1.0)
-    }
-
-    /// The error that remains on the finer grid, if it is of second order.
-    fn error_at_second_order(&self) -> f64 {
-        self.by.abs() / (4f64.powi(self.doublings) - 1.0)
+    /// The error that remains on the finer grid, if errors fall by `ratio` at each doubling.
+    fn error_at(&self, ratio: f64) -> f64 {
+        self.by.abs() / (ratio.powi(-self.doublings) - 1.0)
     }
 
     /// The error that remains after the `next` change, as predicted by this one at first order.
     fn error_after(&self, next: &Change) -> f64 {
-        self.error_at_first_order() * FIRST_ORDER_RATIO.powi(next.doublings)
+        self.error_at(FIRST_ORDER_RATIO) * FIRST_ORDER_RATIO.powi(next.doublings)
     }
 
     /// The change divided by its doublings.
