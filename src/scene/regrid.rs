@@ -39,8 +39,9 @@ pub fn scaled(scene: &Scene<'_>, doublings: i32) -> Result<Grid> {
 /// without a surface are left out of the weighted mean. If fewer than two of the four have a surface, there is none. A centre that coincides with one
 /// of `grid` gets its value exactly.
 pub fn sample(h: &[f64], grid: &Grid, coarse: &Grid) -> Result<Vec<f64>> {
-    let columns: Vec<[(usize, f64); 2]> = (0..coarse.mx).map(|i| between(i, coarse.mx, grid.mx)).collect();
-    let mut sampled = zeros(coarse.len(), "undeformed distances of a coarser grid")?;
+    const SAMPLED: &str = "undeformed distances of a coarser grid";
+    let columns = collected((0..coarse.mx).map(|i| between(i, coarse.mx, grid.mx)), SAMPLED)?;
+    let mut sampled = zeros(coarse.len(), SAMPLED)?;
     for (iy, row) in sampled.chunks_exact_mut(coarse.mx).enumerate() {
         let rows = between(iy, coarse.my, grid.my);
         for (value, columns) in row.iter_mut().zip(&columns) {
@@ -76,12 +77,11 @@ struct Regrid {
 impl Regrid {
     /// The values on the new grid: means over its elements of values that are constant on the old elements.
     fn means(&self, values: &[f64]) -> Result<Vec<f64>> {
-        let parts = |m: usize, to: usize| -> Vec<Vec<(usize, f64)>> { (0..to).map(|i| parts(i, to, m)).collect() };
-        let (columns, rows) = (parts(self.from.mx, self.to.mx), parts(self.from.my, self.to.my));
+        let Regrid { from, to } = self;
         let of = |i: usize| -> f64 {
-            let (rows, columns) = (&rows[i / self.to.mx], &columns[i % self.to.mx]);
-            let row = |y: usize| -> f64 { columns.iter().map(|(x, part)| part * values[self.from.index(*x, y)]).sum() };
-            rows.iter().map(|(y, part)| part * row(*y)).sum()
+            let columns = parts(i % to.mx, to.mx, from.mx);
+            let row = |y: usize| -> f64 { columns.clone().map(|(x, part)| part * values[from.index(x, y)]).sum() };
+            parts(i / to.mx, to.my, from.my).map(|(y, part)| part * row(y)).sum()
         };
         Ok(collected((0..self.to.len()).map(of), "values of a scene on another grid")?)
     }
@@ -112,11 +112,11 @@ impl Regrid {
 
 /// Along one direction: the elements of a grid of `m` elements that overlap element i of a grid of `to` elements. With each comes the part of element
 /// i that it covers.
-fn parts(i: usize, to: usize, m: usize) -> Vec<(usize, f64)> {
+fn parts(i: usize, to: usize, m: usize) -> impl Iterator<Item = (usize, f64)> + Clone {
     // Lengths in units of 1/(to m) of the whole line are integers.
     let (start, end) = (i * m, (i + 1) * m);
-    let part = |x: usize| (end.min((x + 1) * to) - start.max(x * to)) as f64 / m as f64;
-    (start / to..end.div_ceil(to)).map(|x| (x, part(x))).collect()
+    let part = move |x: usize| (end.min((x + 1) * to) - start.max(x * to)) as f64 / m as f64;
+    (start / to..end.div_ceil(to)).map(move |x| (x, part(x)))
 }
 
 /// The arrays of a scene on another grid.
