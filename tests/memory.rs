@@ -209,3 +209,27 @@ fn reported_bytes_grow_by_what_friction_holds() {
         }
     }
 }
+
+/// `bytes` of a report count the directions of GMRES, which solves scenes with coefficients that are not symmetric.
+#[test]
+fn reported_bytes_count_gmres() {
+    let _alone = alone();
+    let (m, mut h) = (96, Vec::new());
+    let scene = scene(m, &mut h);
+    // Coefficients of a half-space, roughly, that fall with the distance. To one side they are larger by a hundredth.
+    let coefficient = |k: usize, slope: f64| {
+        let [x, y] = [k % (2 * m), k / (2 * m)].map(|place| place as f64 - m as f64);
+        (1.0 + slope * x / m as f64) / (0.3 + x.hypot(y)) / m as f64
+    };
+    let [symmetric, leaning] =
+        [0.0, 0.01].map(|slope| -> Vec<f64> { (0..4 * m * m).map(|k| coefficient(k, slope)).collect() });
+    let [symmetric, leaning] = [&symmetric, &leaning].map(|values| {
+        let mut influence: contact_normal_influence = initialised(contact_normal_influence_init);
+        (influence.cx, influence.cy, influence.coefficients) = (m as i32, m as i32, values.as_ptr());
+        let [reported, _] = bytes_of(&contact_normal_scene { influence: &influence, ..scene }, "own coefficients");
+        reported
+    });
+    let more = leaning - symmetric;
+    // 41 directions on more than a tenth of the elements.
+    assert!(more > 41.0 * 8.0 * 0.1 * (m * m) as f64, "{more} bytes more");
+}

@@ -38,9 +38,9 @@ impl Snapshot {
         state.approach = self.approach;
     }
 
-    /// Bytes of the copies of p and C; 0 before the first copy.
+    /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.p.len() * (size_of::<f64>() + size_of::<bool>())
+        self.p.len() * (size_of::<f64>() + 2 * size_of::<bool>())
     }
 }
 

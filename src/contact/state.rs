@@ -100,9 +100,9 @@ impl State {
         [&mut self.h, &mut self.p, &mut self.u].into_iter().for_each(rest);
     }
 
-    /// Bytes of h, p, u and C.
+    /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.contact.len() * (3 * size_of::<f64>() + size_of::<bool>())
+        self.contact.len() * (3 * size_of::<f64>() + 2 * size_of::<bool>())
     }
 
     /// Whether any element is at its pressure limit.

@@ -42,6 +42,11 @@ impl Krylov {
         Ok(reserve(&mut self.change, self.elements.len(), "GMRES")?)
     }
 
+    /// Bytes held for vectors of the contact area.
+    pub(super) fn bytes(&self) -> usize {
+        self.elements.len() * (size_of::<usize>() + (RESTART + 2) * size_of::<f64>())
+    }
+
     /// Discards all directions, and takes the residual, whose norm is `beta`, as the first new direction.
     fn restart(&mut self, residual: &[f64], beta: f64) {
         self.basis.clear();

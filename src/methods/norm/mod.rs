@@ -26,9 +26,9 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Bytes of the vectors of conjugate gradients. Those of GMRES are not counted.
+    /// Bytes held.
     pub(crate) fn bytes(&self) -> usize {
-        (self.residual.len() + self.direction.len() + self.product.len()) * size_of::<f64>()
+        (self.residual.len() + self.direction.len() + self.product.len()) * size_of::<f64>() + self.krylov.bytes()
     }
 
     /// Allocates memory for conjugate gradients on n elements.

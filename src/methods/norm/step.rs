@@ -54,9 +54,9 @@ enum Next {
 }
 
 impl Norm {
-    /// Bytes of the copies of p and u before a trial, and of conjugate gradients.
+    /// Bytes held.
     pub fn bytes(&self) -> usize {
-        2 * self.u_before.len() * size_of::<f64>() + self.inner.bytes()
+        self.before.bytes() + self.u_before.len() * size_of::<f64>() + self.inner.bytes()
     }
 
     /// Step 2: solves the equations on C from the current pressures. Returns the rms over C of the last change of p.
