@@ -30,7 +30,7 @@ pub(super) const NOT_TOGETHER: &str = "this version does not solve them together
 /// An effect of a scene. The methods up to [`stresses`](Effect::stresses) have no default; the defaults of the others change nothing.
 ///
 /// `scene` is the scene without its effects. `others` has an entry for each effect of the library, this one included, in the order of the
-/// [list](super::list); None: the scene does not have that effect.
+/// list (`list.rs`); None: the scene does not have that effect.
 pub trait Effect {
     /// The name of the effect in scenes and messages.
     fn name(&self) -> &'static str;

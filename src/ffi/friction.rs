@@ -92,14 +92,13 @@ pub struct contact_normal_friction {
     pub previous_traction: [*const f64; 2],
     /// An additional rigid slip in x and in y, lengths per step, `[my][mx]` each, both or none; default NULL.
     pub rigid_slip: [*const f64; 2],
-    /// Tangential influence coefficients of your own instead of the half-space's. xx: the displacement in x by a unit traction in x; yy: that in y by
-    /// one in y; xy: that in x by one in y, and in y by one in x. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
-    /// even in x and in y, and xy odd in both (UNSUPPORTED otherwise). In steady rolling of like bodies this is needed in y only: coefficients that
-    /// are uneven in x belong to bodies that roll in one direction. Steps must have this direction, also if `scene->influence` is uneven in x
+    /// Tangential influence coefficients of your own instead of the half-space's. xx: the displacement in x by a unit traction in x; yy: that in y
+    /// by one in y; xy: that in x by one in y, and in y by one in x. All or none, default NULL; all with the same cx, cy and scale. xx and yy must
+    /// be even in x and in y, and xy odd in both (UNSUPPORTED otherwise). In steady rolling of like bodies this is needed in y only: coefficients
+    /// that are uneven in x belong to bodies that roll in one direction. Steps must have this direction, also if `scene->influence` is uneven in x
     /// (INVALID_ARGUMENT otherwise). Rolling needs steps of whole elements, and tables that reach across the contact area and a step. The tables
     /// belong to the set-up of a solver: later scenes may leave them out, and other tables are refused (INFLUENCE_CHANGED). With `scene->influence`
-    /// or
-    /// `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` must be given.
+    /// or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` must be given.
     pub influence: [*const contact_normal_influence; 3],
     /// With `influence`, for unlike bodies: xz and yz, the displacements in x and in y by a unit pressure, with the same cx, cy and scale, both or
     /// none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions then displace the surfaces

@@ -67,10 +67,9 @@ pub unsafe extern "C" fn contact_normal_subsurface_stress(
 /// Computes the stresses of `contact_normal_subsurface_stress` at n `points` `[n][3]`. A point has the coordinates x and y from the middle of the
 /// grid, where element (ix, iy) has its centre at ((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy,
 /// zz, xy, xz, yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused, because stresses jump there or are
-/// infinite. With
-/// `patches` a point must lie below the grid, and has the factors of the patch of the element above (on an edge, of the element with the larger
-/// index). The time grows with n times the number of loaded elements. CANCELLED, or ITERATION_LIMIT after `max_seconds`: the stresses of points that
-/// were not reached are 0. UNSUPPORTED: a `period`. Since 0.2.
+/// infinite. With `patches` a point must lie below the grid, and has the factors of the patch of the element above (on an edge, of the element with
+/// the larger index). The time grows with n times the number of loaded elements. CANCELLED, or ITERATION_LIMIT after `max_seconds`: the stresses of
+/// points that were not reached are 0. UNSUPPORTED: a `period`. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_stress_at_points(
     scene: *const contact_normal_scene,

@@ -19,8 +19,7 @@ pub const CONTACT_NORMAL_FORM_BACKWARD_EULER: i32 = 3;
 /// Effect: viscoelastic bodies, which relax, and a step in time of duration `time_step`. The `shear_modulus` of the scene is the instantaneous one.
 /// It falls to `G(t) = G - sum of modulus (1 - exp(-t/time))` at a constant Poisson ratio. The branches of a coated body are those of the coating,
 /// and the body below must be rigid. A solver handle keeps the history of the steps: the first step has `continues` 0, the others 1. `displacement`
-/// and
-/// `deformed_distance` contain the displacements that earlier steps left. A step that stops early counts as a step. See docs/visco.md.
+/// and `deformed_distance` contain the displacements that earlier steps left. A step that stops early counts as a step. See docs/visco.md.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_visco {

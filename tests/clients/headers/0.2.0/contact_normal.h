@@ -1062,14 +1062,13 @@ typedef struct contact_normal_friction {
    */
   const double *rigid_slip[2];
   /*
-   Tangential influence coefficients of your own instead of the half-space's. xx: the displacement in x by a unit traction in x; yy: that in y by
-   one in y; xy: that in x by one in y, and in y by one in x. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
-   even in x and in y, and xy odd in both (UNSUPPORTED otherwise). In steady rolling of like bodies this is needed in y only: coefficients that
-   are uneven in x belong to bodies that roll in one direction. Steps must have this direction, also if `scene->influence` is uneven in x
+   Tangential influence coefficients of your own instead of the half-space's. xx: the displacement in x by a unit traction in x; yy: that in y
+   by one in y; xy: that in x by one in y, and in y by one in x. All or none, default NULL; all with the same cx, cy and scale. xx and yy must
+   be even in x and in y, and xy odd in both (UNSUPPORTED otherwise). In steady rolling of like bodies this is needed in y only: coefficients
+   that are uneven in x belong to bodies that roll in one direction. Steps must have this direction, also if `scene->influence` is uneven in x
    (INVALID_ARGUMENT otherwise). Rolling needs steps of whole elements, and tables that reach across the contact area and a step. The tables
    belong to the set-up of a solver: later scenes may leave them out, and other tables are refused (INFLUENCE_CHANGED). With `scene->influence`
-   or
-   `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` must be given.
+   or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` must be given.
    */
   const struct contact_normal_influence *influence[3];
   /*
@@ -1238,8 +1237,7 @@ typedef struct contact_normal_adhesion {
  Effect: viscoelastic bodies, which relax, and a step in time of duration `time_step`. The `shear_modulus` of the scene is the instantaneous one.
  It falls to `G(t) = G - sum of modulus (1 - exp(-t/time))` at a constant Poisson ratio. The branches of a coated body are those of the coating,
  and the body below must be rigid. A solver handle keeps the history of the steps: the first step has `continues` 0, the others 1. `displacement`
- and
- `deformed_distance` contain the displacements that earlier steps left. A step that stops early counts as a step. See docs/visco.md.
+ and `deformed_distance` contain the displacements that earlier steps left. A step that stops early counts as a step. See docs/visco.md.
  */
 typedef struct contact_normal_visco {
   /*
@@ -3146,10 +3144,9 @@ contact_normal_status contact_normal_subsurface_stress(const struct contact_norm
  Computes the stresses of `contact_normal_subsurface_stress` at n `points` `[n][3]`. A point has the coordinates x and y from the middle of the
  grid, where element (ix, iy) has its centre at ((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy,
  zz, xy, xz, yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused, because stresses jump there or are
- infinite. With
- `patches` a point must lie below the grid, and has the factors of the patch of the element above (on an edge, of the element with the larger
- index). The time grows with n times the number of loaded elements. CANCELLED, or ITERATION_LIMIT after `max_seconds`: the stresses of points that
- were not reached are 0. UNSUPPORTED: a `period`. Since 0.2.
+ infinite. With `patches` a point must lie below the grid, and has the factors of the patch of the element above (on an edge, of the element with
+ the larger index). The time grows with n times the number of loaded elements. CANCELLED, or ITERATION_LIMIT after `max_seconds`: the stresses of
+ points that were not reached are 0. UNSUPPORTED: a `period`. Since 0.2.
  */
 contact_normal_status contact_normal_stress_at_points(const struct contact_normal_scene *scene,
                                                       int32_t body,
