@@ -3001,8 +3001,8 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
 
  CANCELLED: the surface callback or `options->stop` cancelled the call. ITERATION_LIMIT: `options->max_seconds` was reached, and rows have the
  results so far; or because of `max_cycles` neither the scene's grid nor a coarser one was solved. STAGNATED: neither the scene's grid nor a
- coarser one was solved. UNSUPPORTED: influence coefficients of your own, FIXED contact, or a step of bodies that relax with `continues`. Since
- 0.2.
+ coarser one was solved. UNSUPPORTED: influence coefficients of your own, FIXED contact, or a step of bodies that relax with `continues`.
+ Since 0.2.
  */
 contact_normal_status contact_normal_cost_of_accuracy(const struct contact_normal_scene *scene,
                                                       const struct contact_normal_options *options,

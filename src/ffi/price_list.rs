@@ -138,8 +138,8 @@ impl From<&Price> for contact_normal_price {
 ///
 /// CANCELLED: the surface callback or `options->stop` cancelled the call. ITERATION_LIMIT: `options->max_seconds` was reached, and rows have the
 /// results so far; or because of `max_cycles` neither the scene's grid nor a coarser one was solved. STAGNATED: neither the scene's grid nor a
-/// coarser one was solved. UNSUPPORTED: influence coefficients of your own, FIXED contact, or a step of bodies that relax with `continues`. Since
-/// 0.2.
+/// coarser one was solved. UNSUPPORTED: influence coefficients of your own, FIXED contact, or a step of bodies that relax with `continues`.
+/// Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
     scene: *const contact_normal_scene,
