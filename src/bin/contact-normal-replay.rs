@@ -1,4 +1,4 @@
-//! Repeats the call of a dump: `contact-normal-replay FILE`. See docs/dump.md.
+//! Makes the call of a dump again and prints whether the status is the same: `contact-normal-replay FILE`. See docs/dump.md.
 
 use std::ffi::CStr;
 use std::process::ExitCode;
@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use contact_normal::ffi::dump::{Dump, Replayed};
 use contact_normal::ffi::{contact_normal_last_error, contact_normal_report, contact_normal_status_text};
 
-/// The exit status if the call is not made: no file was named, it is not a dump, or it does not contain the whole call.
+/// The exit status if the call is not made: no file is named, the file is not a dump, or the dump does not contain the whole call.
 const NOT_MADE: u8 = 2;
 
 fn main() -> ExitCode {
@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Repeats the call and prints its result. Returns whether the status is that of the file.
+/// Makes the call again and prints the result. Returns whether the status is that of the file.
 fn replay(dump: Dump) -> Result<bool, String> {
     let (status, message) = (dump.status(), dump.message().to_owned());
     println!("{} of version {}: {}", dump.call(), dump.library(), told(status, &message));
@@ -57,6 +57,7 @@ fn print_report(report: &contact_normal_report) {
     );
 }
 
+/// A status with its text and the message of the call.
 fn told(status: i32, message: &str) -> String {
     // SAFETY: never NULL, static storage.
     let text = unsafe { CStr::from_ptr(contact_normal_status_text(status)) }.to_string_lossy();

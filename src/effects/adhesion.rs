@@ -1,6 +1,9 @@
-//! Effect: attraction sigma across the gap, by a law: `p = q - sigma(e)` with contact pressures `q >= 0`.
+//! Effect: adhesion. The surfaces attract each other with sigma(e), a stress that falls with the distance e: `p = q - sigma(e)`, with contact
+//! pressures `q >= 0`.
 //!
 //! See [`adhesion`](crate::adhesion) for the problem that is solved.
+
+use std::ops::Range;
 
 use super::each::Each;
 use super::effect::{Effect, Value};
@@ -11,12 +14,12 @@ use crate::grid::Grid;
 use crate::powers::LARGEST;
 use crate::scene::{Load, Plain};
 
-/// Limits on work and range: their squares, and quotients of these squares, are finite.
-const RANGE: (f64, f64) = (1e-70, 1e70);
-/// The edge of a law is smeared over at least this part of the range: no grid resolves less.
+/// The values that a work of adhesion and a range may have. Their squares, and quotients of these squares, are finite.
+const ALLOWED: Range<f64> = 1e-70..1e70;
+/// The smallest `smear` of Dugdale's law, as a part of the range. No grid resolves less.
 const LEAST_SMEAR: f64 = 1e-6;
 
-/// w, a force per length (an energy per area).
+/// The work of adhesion w: an energy per area.
 pub type Work<'a> = Each<'a>;
 
 /// Attraction between the bodies.
@@ -26,20 +29,21 @@ pub struct Adhesion<'a> {
     pub law: Law,
     /// The work of adhesion, >= 0.
     pub work: Work<'a>,
-    /// The range rho, a length; 0: the shortest that the elements resolve.
+    /// The range rho of the attraction, a length. 0: the shortest range that the elements resolve.
     pub range: f64,
-    /// Which of several states is found if no previous state is given.
+    /// Where a solve without a previous state begins. It matters if several states belong to one approach.
     pub start: Start,
-    /// Whether dF/dapproach is computed.
+    /// Whether to compute the stiffness dF/dapproach.
     pub stiffness: bool,
-    /// Whether the distance of the state from a snap is computed.
+    /// Whether to compute the stability margin 1 - lambda: 1 without attraction, 0 where the bodies snap (module `adhesion::stability`).
     pub stability: bool,
-    /// tau0 >= 0, a traction. With friction, tractions in contact are at most `mu q + tau0`, q the contact pressure.
+    /// The shear strength tau0 >= 0 of the adhesive contact, a traction. With friction, tractions in contact are at most `mu q + tau0`, where q is
+    /// the contact pressure.
     pub shear_strength: f64,
 }
 
 impl Adhesion<'_> {
-    /// Whether anything attracts: a work of 0 everywhere is no adhesion.
+    /// Whether the surfaces attract each other: the work of adhesion is not 0 on all elements.
     pub fn attracts(&self) -> bool {
         !self.work.is_zero()
     }
@@ -65,7 +69,7 @@ impl Effect for Adhesion<'_> {
         }
     }
 
-    // Adhesion with invalid values counts as well, so that the scene refuses it.
+    // A scene has the effect also if its values are invalid, so that the scene refuses them.
     fn is_one(&self, scene: &Plain<'_>) -> bool {
         self.attracts() || self.check(&scene.grid).is_err()
     }
@@ -73,11 +77,11 @@ impl Effect for Adhesion<'_> {
     fn check(&self, grid: &Grid) -> Result<()> {
         let require_work = |name: &str, work: f64| {
             not_negative(name, work)?;
-            let is_work = work == 0.0 || (RANGE.0..RANGE.1).contains(&work);
+            let is_work = work == 0.0 || ALLOWED.contains(&work);
             require(is_work, name, work, "it must be 0 or lie in 1e-70..1e70: choose other units")
         };
         self.work.check(["adhesion->work_of_adhesion", "adhesion->works_of_adhesion"], grid, require_work)?;
-        let is_range = self.range == 0.0 || (RANGE.0..RANGE.1).contains(&self.range);
+        let is_range = self.range == 0.0 || ALLOWED.contains(&self.range);
         require(
             is_range,
             "adhesion->range",
@@ -112,7 +116,7 @@ impl Effect for Adhesion<'_> {
         Ok(())
     }
 
-    // No set-up depends on adhesion: it may differ in each solve.
+    // The set-up of a solver does not depend on adhesion, which may differ in each solve.
     fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
 
     fn gives_way(&self, _scene: &Plain<'_>) -> bool {

@@ -1,4 +1,4 @@
-//! Effect: a coating, a bonded elastic layer of some thickness on one body or on both. See [`Coated`].
+//! Effect: a coating. It is a bonded elastic layer of finite thickness on one body or on both. [`Coated`] has the influence coefficients.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -10,33 +10,35 @@ use crate::grid::Grid;
 use crate::influence::{radial, Coat, Coated, CoatedBody, CoatedPeriodic, Kernel};
 use crate::scene::{Bodies, Plain};
 
-/// Bound on the shear modulus of a coating over that of its substrate.
+/// The largest ratio of a coating's shear modulus to that of the substrate.
 const STIFFEST: f64 = 1e4;
-/// Below this ratio of the layer's modulus to the substrate's, as on a rigid body, an almost incompressible layer must be at least THINNEST elements
-/// thick. Shear is its only compliance.
+/// Below this ratio of the layer's shear modulus to the substrate's, the substrate counts as rigid. An almost incompressible layer on a rigid
+/// substrate yields by shear only.
 const RIGID_RATIO: f64 = 1e-4;
+/// The smallest thickness of an almost incompressible layer on a rigid substrate, relative to the longer side of an element.
 const THINNEST: f64 = 0.125;
-/// Thickness, relative to an element, below which there is no layer.
+/// Up to this thickness, relative to the shorter side of an element, a layer counts as none.
 const LEAST_THICKNESS: f64 = 1e-100;
 
-/// A bonded elastic layer; the body's own shear modulus and Poisson ratio are then those of the substrate, which may be rigid.
+/// A bonded elastic layer on a body. The shear modulus and the Poisson ratio of the body are then those of the substrate, which may be rigid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatingLayer {
-    /// t, a length; 0: no coating.
+    /// The thickness t, a length. 0: no coating.
     pub thickness: f64,
-    /// G of the layer.
+    /// The shear modulus G of the layer.
     pub shear_modulus: f64,
-    /// nu of the layer, in (-1, 0.5].
+    /// The Poisson ratio nu of the layer, in (-1, 0.5].
     pub poisson_ratio: f64,
 }
 
-/// The coatings of body 1 and 2.
+/// The coatings of body 1 and of body 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coating {
     /// None: the body has no coating.
     pub layers: [Option<CoatingLayer>; 2],
 }
 
+/// The names in messages of the thickness, the shear modulus and the Poisson ratio of each coating.
 const NAMES: [[&str; 3]; 2] = [
     ["coating[0]->thickness", "coating[0]->shear_modulus", "coating[0]->poisson_ratio"],
     ["coating[1]->thickness", "coating[1]->shear_modulus", "coating[1]->poisson_ratio"],
@@ -48,7 +50,7 @@ impl Coating {
         Coating { layers: [Some(CoatingLayer { thickness, shear_modulus, poisson_ratio }), None] }
     }
 
-    /// The coating of a body, unless it has no thickness or is of the substrate's material.
+    /// The coating of body `b`. None: the coating has no thickness, or its constants are those of the substrate.
     pub fn in_effect(&self, b: usize, scene: &Plain<'_>) -> Option<CoatingLayer> {
         let (modulus, ratio) = (scene.bodies.shear_modulus[b], scene.bodies.poisson_ratio[b]);
         let is_none = |layer: &CoatingLayer| {
@@ -58,7 +60,7 @@ impl Coating {
         self.layers[b].filter(|layer| !is_none(layer))
     }
 
-    /// One body with its coating.
+    /// The compliance of body `b` with its coating.
     fn body(&self, b: usize, scene: &Plain<'_>) -> Result<CoatedBody> {
         let (modulus, ratio) = (scene.bodies.shear_modulus[b], scene.bodies.poisson_ratio[b]);
         let plain = CoatedBody { compliance: (1.0 - ratio) / (2.0 * PI * modulus), layer: None };
@@ -69,12 +71,13 @@ impl Coating {
         Ok(CoatedBody { compliance, layer: Some((thickness, radial(mu, [poisson_ratio, ratio]))) })
     }
 
-    /// Refuses a layer whose only compliance is shear in waves shorter than elements: pressures constant on elements do not excite such waves.
+    /// Refuses a layer that yields only by shear, and only under pressure waves that are shorter than the elements. Pressures that are constant on
+    /// elements do not excite such waves.
     fn check_thickness(&self, b: usize, (scene, body): (&Plain<'_>, &CoatedBody)) -> Result<()> {
         let Some((t, radial)) = &body.layer else { return Ok(()) };
         let longer = f64::max(scene.grid.dx, scene.grid.dy);
         let (s, transfer) = (PI * t / longer, &radial.transfer);
-        // B(s) of a thin layer: the substrate, its compression, and its shear.
+        // A thin layer has a term of the substrate, one of the compression of the layer (proportional to s), and one of its shear (to s^3).
         let is_sheared = transfer.substrate + transfer.of_mean * s < 2.0 / 3.0 * s.powi(3) || transfer.of_mean == 0.0;
         if self.ratio(b, scene)? < RIGID_RATIO && *t < THINNEST * longer && is_sheared {
             let [thickness, dx, dy] = [*t, scene.grid.dx, scene.grid.dy].map(Number);
@@ -87,7 +90,7 @@ impl Coating {
         Ok(())
     }
 
-    /// The shear modulus of a layer relative to that of the body: 0 on a rigid body.
+    /// The ratio of the layer's shear modulus to that of the body below: 0 on a rigid body. Refuses ratios above [`STIFFEST`].
     fn ratio(&self, b: usize, scene: &Plain<'_>) -> Result<f64> {
         let (modulus, below) = (self.layers[b].map_or(1.0, |layer| layer.shear_modulus), scene.bodies.shear_modulus[b]);
         match modulus / below {
@@ -101,7 +104,7 @@ impl Coating {
         }
     }
 
-    /// Both bodies; none if no coating is in effect.
+    /// The compliances of both bodies with their coatings. None: no coating is in effect.
     pub fn bodies(&self, scene: &Plain<'_>) -> Result<Option<[CoatedBody; 2]>> {
         let bodies = [self.body(0, scene)?, self.body(1, scene)?];
         Ok(bodies.iter().any(|body| body.layer.is_some()).then_some(bodies))
@@ -109,14 +112,14 @@ impl Coating {
 }
 
 impl Coating {
-    /// The common coating of both bodies, for their tractions; none if no coating is in effect.
+    /// The coating that both bodies have, for the influence coefficients of tractions. None: no coating is in effect.
     pub fn of_both(&self, scene: &Plain<'_>) -> Result<Option<Coat>> {
         let Some(layer) = self.in_effect(0, scene) else { return Ok(None) };
         let nu = [layer.poisson_ratio, scene.bodies.poisson_ratio[0]];
         Ok(Some(Coat::new(layer.thickness, self.ratio(0, scene)?, nu)))
     }
 
-    /// The difference between both bodies; none if layers and substrates are the same.
+    /// A text that names the first difference between both bodies. None: their layers and substrates are the same.
     fn difference(&self, scene: &Plain<'_>) -> Option<String> {
         let (one, two) = match [0, 1].map(|b| self.in_effect(b, scene)) {
             [None, None] => return None,
@@ -135,7 +138,7 @@ impl Coating {
         differ.map(|(first, second, [one, two])| format!("{first} is {} and {second} {}", Number(one), Number(two)))
     }
 
-    /// The materials at the surfaces: a body's own, or its layer's.
+    /// The elastic constants at the surfaces: those of the coating where there is one, otherwise those of the body.
     pub fn at_surface(&self, scene: &Plain<'_>) -> Bodies {
         let mut bodies = scene.bodies;
         for b in 0..2 {
@@ -146,7 +149,7 @@ impl Coating {
         bodies
     }
 
-    /// The displacement of both bodies under a unit pressure wave of wave number k > 0, after a check.
+    /// The displacement of both bodies together by a pressure wave of amplitude 1 and wave number k > 0. Refuses invalid constants.
     pub fn compliance(&self, scene: &Plain<'_>, k: f64) -> Result<f64> {
         self.check(&scene.grid)?;
         scene.bodies.check_each()?;
@@ -186,14 +189,14 @@ impl Effect for Coating {
         Ok(())
     }
 
-    // A NaN ratio is refused by its own check.
+    // `!(ratio >= 0.5)` is true for NaN, which `check` refuses.
     fn gives_way(&self, scene: &Plain<'_>) -> bool {
         (0..2).filter_map(|b| self.in_effect(b, scene)).any(|layer| !(layer.poisson_ratio >= 0.5))
     }
 
-    // The normal and the tangential problem of different coated bodies are coupled by more than a difference of moduli.
+    // If the coated bodies differ, tractions displace their surfaces along the normal in a way for which the library has no coefficients.
     fn check_tractions(&self, scene: &Plain<'_>) -> Result<()> {
-        // A layer or a body without meaning is refused by its own check.
+        // Invalid constants are refused elsewhere, with a better message.
         let is_checked = self.check(&scene.grid).is_ok() && scene.bodies.check_each().is_ok();
         match self.difference(scene).filter(|_| is_checked) {
             Some(difference) => Err(Error::Unsupported(format!(
@@ -225,7 +228,7 @@ impl Effect for Coating {
         if layers == [None, None] {
             return;
         }
-        // A missing coating is told as well.
+        // Of a body without a coating the thickness 0 is recorded, so that a later scene cannot add a coating.
         for (layer, [t, g, nu]) in layers.into_iter().zip(NAMES) {
             tell(t, Value::Number(layer.map_or(0.0, |layer| layer.thickness)));
             if let Some(layer) = layer {
@@ -235,7 +238,7 @@ impl Effect for Coating {
         }
     }
 
-    // A layer without thickness, or of the body's own material, is no coating.
+    // A layer without thickness, or with the constants of the body below, is no coating.
     fn is_one(&self, scene: &Plain<'_>) -> bool {
         (0..2).any(|b| self.in_effect(b, scene).is_some()) || self.check(&scene.grid).is_err()
     }

@@ -1,4 +1,4 @@
-//! Problems coupled with the normal one: both are solved in turns, with a history from step to step.
+//! Problems that are coupled with the normal one and solved in turns with it, and the history of an effect from load step to load step.
 
 use crate::contact::State;
 use crate::error::{invalid, Result};
@@ -6,52 +6,52 @@ use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::progress::{Monitor, Outcome};
 
-/// A problem that displaces the undeformed distance of the normal one. `state` holds the solution of the normal problem, with the last displaced
-/// distance.
+/// A problem whose solution depends on the pressures and may change the undeformed distance of the normal problem. In the methods, `state` holds the
+/// last solution of the normal problem. After the first solution of the normal problem, the solver calls
 ///
 /// ```text
-/// repeat   solve           its own problem, with the pressures of the normal one
-///          displace        h by the displacements of this solution
-///          until the certificate of the normal problem holds with that distance; else the normal problem once more
+/// repeat   solve           this problem, with the pressures of the normal one
+///          displace        adds the displacements of this solution to h
+///          if the certificate of the normal problem holds with the new h: leave the loop; else solve the normal problem again
 /// step_done
 /// ```
 pub trait Coupled {
-    /// Solves the problem with the pressures of a normal problem that ended with `outcome`. Returns its own outcome.
+    /// Solves this problem for the pressures of a normal problem that ended with `outcome`. Returns the outcome of this problem.
     fn solve(&mut self, outcome: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome>;
 
-    /// Whether the problem displaces the undeformed distance; if not, there is one turn.
+    /// Whether the problem changes the undeformed distance. If not, it is solved once, without turns.
     fn displaces(&self) -> bool;
 
     /// Adds the problem's displacements to the undeformed distance of the scene.
     fn displace(&mut self, distance: &mut [f64]);
 
-    /// Whether the options allow another turn.
+    /// Whether the limits of the options (on cycles, for instance) allow another turn.
     fn has_work_left(&self) -> bool;
 
-    /// After the last turn: refuses loads that the last pressures do not allow.
+    /// Called after the last turn. Refuses loads that cannot be carried with the final pressures.
     fn refuse(&mut self) -> Result<()> {
         Ok(())
     }
 
-    /// Ends the step: keeps the state from which the next one continues.
+    /// Ends the step: keeps what the next step continues from.
     fn step_done(&mut self, state: &State);
 }
 
-/// The history of an effect from step to step: fields of one value per element.
+/// What an effect keeps from step to step: some fields of one value per element, the time, and the error.
 #[derive(Debug, Default)]
 pub struct History {
     fields: Vec<Vec<f64>>,
     has_step: bool,
-    /// Whether the history was [taken](History::take) from another solver, whose result belongs to it.
+    /// Whether the history was [taken](History::take) from another solver.
     pub is_given: bool,
-    /// The time of the steps so far, for effects with a time.
+    /// The sum of the time steps so far, for effects with a time.
     pub time: f64,
-    /// The sum of the errors of the steps so far, a length.
+    /// The sum of the estimated errors of the steps so far, a length.
     pub error: f64,
 }
 
 impl History {
-    /// The `count` fields, 0 before the first step. Refuses a [taken](History::take) history with another number of fields.
+    /// The `count` fields. They are 0 before the first step. Refuses a [taken](History::take) history with another number of fields.
     pub fn fields(&mut self, count: usize, grid: &Grid) -> Result<&mut [Vec<f64>]> {
         if self.is_given && self.fields.len() != count {
             let known = self.fields.len();
@@ -63,40 +63,40 @@ impl History {
         Ok(&mut self.fields[..count])
     }
 
-    /// The present fields.
+    /// The fields as they are, without a check of their number.
     pub fn known(&self) -> &[Vec<f64>] {
         &self.fields
     }
 
-    /// The present fields, mutable.
+    /// The fields as they are, mutable.
     pub fn known_mut(&mut self) -> &mut [Vec<f64>] {
         &mut self.fields
     }
 
-    /// Whether a step was done.
+    /// Whether there is a finished step.
     pub fn has_step(&self) -> bool {
         self.has_step
     }
 
-    /// Ends a step.
+    /// Records that a step is finished.
     pub fn keep(&mut self) {
         self.has_step = true;
     }
 
-    /// Forgets all steps.
+    /// Clears the history: all fields, the time and the error are 0.
     pub fn forget(&mut self) {
         self.fields.iter_mut().for_each(|field| field.fill(0.0));
         (self.has_step, self.is_given, self.time, self.error) = (false, false, 0.0, 0.0);
     }
 
-    /// The history as numbers: the time, the error, then the fields one after the other. None before the first step or
+    /// The history as an array: the time, the error, then the fields one after the other. None before the first step or
     /// without fields.
     pub fn numbers(&self) -> Option<Vec<f64>> {
-        let is_there = self.has_step && !self.fields.is_empty();
-        is_there.then(|| [self.time, self.error].into_iter().chain(self.fields.iter().flatten().copied()).collect())
+        let has_history = self.has_step && !self.fields.is_empty();
+        has_history.then(|| [self.time, self.error].into_iter().chain(self.fields.iter().flatten().copied()).collect())
     }
 
-    /// Takes the history from its [numbers](History::numbers).
+    /// Sets the history from the [`numbers`](History::numbers) of another one.
     pub fn take(&mut self, numbers: &[f64], grid: &Grid) -> Result<()> {
         let [time, error, values @ ..] = numbers else { return invalid("a history begins with two numbers".into()) };
         if values.is_empty() || values.len() % grid.len() != 0 {

@@ -1,19 +1,19 @@
-//! A value for each element, uniform or not.
+//! A quantity that has a value on each element: one value for all elements, or an array.
 
 use crate::error::Result;
 use crate::grid::{check_values, Grid};
 
-/// A value for each element.
+/// A quantity that has a value on each element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Each<'a> {
     /// One value for all elements.
     Uniform(f64),
-    /// One per element, `[my][mx]`.
+    /// One value for each element, `[my][mx]`.
     PerElement(&'a [f64]),
 }
 
 impl<'a> Each<'a> {
-    /// The values `each` if they are given, otherwise `uniform`.
+    /// The array `each` if it is given, otherwise the value `uniform` for all elements.
     pub fn of(each: Option<&'a [f64]>, uniform: f64) -> Each<'a> {
         each.map_or(Each::Uniform(uniform), Each::PerElement)
     }
@@ -27,7 +27,7 @@ impl<'a> Each<'a> {
         }
     }
 
-    /// Whether it is 0 everywhere.
+    /// Whether the value is 0 on all elements.
     pub fn is_zero(&self) -> bool {
         match self {
             Each::Uniform(value) => *value == 0.0,
@@ -35,7 +35,7 @@ impl<'a> Each<'a> {
         }
     }
 
-    /// The values, if they are given per element.
+    /// The array of values. None: one value holds for all elements.
     pub fn per_element(&self) -> Option<&'a [f64]> {
         match self {
             Each::Uniform(_) => None,
@@ -43,7 +43,7 @@ impl<'a> Each<'a> {
         }
     }
 
-    /// Checks all values by `require`. `one` and `each` are the names in messages of the uniform value and of the values per element.
+    /// Checks all values by `require`. Messages call a uniform value `one`, and an array `each`.
     pub(crate) fn check(
         &self,
         [one, each]: [&str; 2],

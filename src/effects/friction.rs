@@ -1,7 +1,6 @@
-//! Effect: friction, `|q| <= g = mu p`: tangential tractions from the motion of the bodies, or from the tangential forces.
+//! Effect: friction. The tangential tractions q follow from the motion of the bodies or from the tangential forces, with `|q| <= g = mu p`.
 //!
-//! See [`friction`](crate::friction) for the problem that is solved. For like bodies the normal problem is the same with and without friction. It is
-//! solved first.
+//! See [`friction`](crate::friction) for the problem that is solved. The normal problem is solved first. For like bodies friction does not change it.
 
 use super::each::Each;
 use super::friction_law::{Branch, FrictionLaw, PlasticLayer};
@@ -11,22 +10,23 @@ use crate::grid::Grid;
 /// A coefficient of friction or of wear, or a compliance.
 pub type Coefficient<'a> = Each<'a>;
 
-/// Relative round-off of `distance * cosine / dx`: below 1e-15 from the angle (at most 2 pi), cosine, product and quotient; ten times that.
+/// Relative to the length rolled: a number of elements that differs from a whole number by no more than this counts as whole. The round-off of
+/// `distance * cosine / dx` is below 1e-15: that of the angle (at most 2 pi), the cosine, the product and the quotient.
 const ROUND_OFF: f64 = 1e-14;
 
 /// How the bodies move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Motion {
-    /// Sideways and about the normal, without rolling; creepages are lengths, spin is an angle.
+    /// The bodies slide along the surface and turn about the normal, without rolling. Creepages are lengths, the spin is an angle.
     #[default]
     Shift,
-    /// A step of rolling, from the previous tractions.
+    /// The bodies roll by one step, which begins with the previous tractions.
     TransientRolling,
-    /// Rolling whose tractions no longer change. Given or kept tractions only start the iteration.
+    /// The bodies roll, and the tractions no longer change. Previous tractions are only an initial guess of the iteration.
     SteadyRolling,
 }
 
-/// The quantity that is prescribed in a direction; the other one is found.
+/// The quantity that is prescribed in a direction, the creepage or the force. The solver finds the other one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Prescribed {
     /// The creepage: for a shift a length, for rolling a length per length rolled.
@@ -38,12 +38,12 @@ pub enum Prescribed {
 /// Where the tractions before this step come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Previous<'a> {
-    /// There are none: from rest.
+    /// There are no tractions before the step.
     #[default]
     None,
-    /// Tractions in x and y, `[my][mx]` each.
+    /// The caller gives the tractions in x and in y, `[my][mx]` each.
     Given([&'a [f64]; 2]),
-    /// The last result of this solver.
+    /// The tractions are those of this solver's last result.
     Kept,
 }
 
@@ -62,33 +62,34 @@ pub struct Friction<'a> {
     pub spin_centre: [f64; 2],
     /// dq, the length rolled in the step; 0: dx.
     pub rolling_distance: f64,
-    /// chi, the angle of rolling from the x axis.
+    /// chi, the angle between the x axis and the direction of rolling.
     pub rolling_direction: f64,
-    /// The slip by spin is taken ahead of each element's centre by this part of the length rolled.
+    /// In rolling, the slip due to spin is that at a point ahead of the element's centre, by this part of the length rolled.
     pub spin_offset: f64,
     /// The tractions before the step.
     pub previous: Previous<'a>,
-    /// Tractions in x and y to start the iteration from, `[my][mx]` each; the solution does not depend on them.
+    /// The initial guess of the tractions in x and in y, `[my][mx]` each. The solution does not depend on them.
     pub initial: Option<[&'a [f64]; 2]>,
-    /// An additional rigid slip, lengths per step, x and y.
+    /// An additional rigid slip in x and in y, `[my][mx]` each: lengths per step.
     pub rigid_slip: Option<[&'a [f64]; 2]>,
-    /// Weights of the creepages in x and in y at each element, `[my][mx]` each; none: 1. Prescribed forces are sums of q with these weights.
+    /// Weights of the creepages in x and in y at each element, `[my][mx]` each. None: 1. Prescribed forces are sums of q with these weights.
     pub weights: Option<[&'a [f64]; 2]>,
-    /// The compliance of a thin elastic layer between the bodies: its displacement per traction.
+    /// The compliance of a thin elastic layer between the bodies: the tangential displacement per traction.
     pub compliance: Coefficient<'a>,
-    /// The caller's tangential coefficients; none: those of the bodies.
+    /// The caller's tangential influence coefficients. None: those of the bodies.
     pub influence: Option<TangentialInfluence<'a>>,
-    /// Whether the derivatives of the forces by the creepages and the spin are computed.
+    /// Whether to compute the derivatives of the forces by the creepages and by the spin.
     pub sensitivities: bool,
-    /// How the coefficient falls with the slip velocity; none: it is constant.
+    /// How the coefficient falls with the slip velocity. None: the coefficient is constant.
     pub law: Option<FrictionLaw>,
-    /// A layer that yields; none: tractions are bounded by friction alone.
+    /// A layer that yields. None: tractions are bounded by friction alone.
     pub layer: Option<PlasticLayer>,
-    /// Coefficients of the particles before the step (law with memory), `[my][mx]`, in rolling at their places before it; none: those at rest.
+    /// The coefficients of friction of the particles before the step (for a law with memory), `[my][mx]`. In rolling these are the particles that are
+    /// at the elements before the step. None: the coefficients at rest.
     pub coefficients_before: Option<&'a [f64]>,
-    /// Yield limits of the particles before the step; none: those of fresh material.
+    /// The yield limits of the same particles, `[my][mx]`. None: the limit of fresh material.
     pub yield_limits: Option<&'a [f64]>,
-    /// Which of several solutions, with a law or a layer that hardens or softens.
+    /// Which solution is wanted, if a law, or a layer that hardens or softens, allows several.
     pub branch: Branch,
 }
 
@@ -96,7 +97,7 @@ impl Friction<'_> {
     /// The effect's name in a scene.
     pub const NAME: &'static str = "friction";
 
-    /// Friction with this coefficient and no motion.
+    /// Friction with a uniform coefficient, and a shift of 0.
     pub fn new(coefficient: f64) -> Friction<'static> {
         Friction {
             coefficient: Coefficient::Uniform(coefficient),
@@ -122,7 +123,7 @@ impl Friction<'_> {
         }
     }
 
-    /// The length rolled in a step; for a shift 1, so that creepages are lengths.
+    /// The factor from creepages to slips: the length rolled in the step, or 1 for a shift, whose creepages are lengths.
     pub fn distance(&self, grid: &Grid) -> f64 {
         match self.motion {
             Motion::Shift => 1.0,
@@ -131,21 +132,21 @@ impl Friction<'_> {
         }
     }
 
-    /// The elements that a step of rolling covers in x and in y. Numbers that are whole up to round-off are rounded,
-    /// because coefficients are simpler there.
+    /// The length of a step of rolling in x and in y, in elements. Numbers that are whole up to round-off are rounded, because steps of whole
+    /// elements have simpler coefficients.
     pub fn elements_rolled(&self, grid: &Grid) -> (f64, f64) {
         let (distance, (sine, cosine)) = (self.distance(grid), self.rolling_direction.sin_cos());
-        let clean = |value: f64| {
+        let rounded_if_whole = |value: f64| {
             if (value - value.round()).abs() <= ROUND_OFF * distance / grid.dx.min(grid.dy) {
                 value.round()
             } else {
                 value
             }
         };
-        (clean(distance * cosine / grid.dx), clean(distance * sine / grid.dy))
+        (rounded_if_whole(distance * cosine / grid.dx), rounded_if_whole(distance * sine / grid.dy))
     }
 
-    /// The rigid slip of the step at element i, without unknown creepages.
+    /// The rigid slip of the step at element i, in x and in y, from the prescribed creepages, the spin and the additional rigid slip.
     pub fn rigid_slip_at(&self, grid: &Grid, i: usize) -> [f64; 2] {
         let distance = self.distance(grid);
         let centre =
@@ -161,23 +162,23 @@ impl Friction<'_> {
             Prescribed::Creepage(creepage) => creepage,
             Prescribed::Force(_) => 0.0,
         });
-        let own = self.rigid_slip.map_or([0.0; 2], |own| [own[0][i], own[1][i]]);
+        let additional = self.rigid_slip.map_or([0.0; 2], |[in_x, in_y]| [in_x[i], in_y[i]]);
         let weight = self.weight_at(i);
-        let creepage = [weight[0] * creepage[0], weight[1] * creepage[1]];
-        [distance * (creepage[0] - self.spin * y) + own[0], distance * (creepage[1] + self.spin * x) + own[1]]
+        let [xi, eta] = [weight[0] * creepage[0], weight[1] * creepage[1]];
+        [distance * (xi - self.spin * y) + additional[0], distance * (eta + self.spin * x) + additional[1]]
     }
 
-    /// Whether the force is given in x, and in y.
+    /// Whether the force is prescribed in x, and in y.
     pub fn has_forces(&self) -> [bool; 2] {
         self.prescribed.map(|given| matches!(given, Prescribed::Force(_)))
     }
 
-    /// The weights of the creepages at element i.
+    /// The weights of both creepages at element i.
     pub fn weight_at(&self, i: usize) -> [f64; 2] {
         self.weights.map_or([1.0; 2], |[x, y]| [x[i], y[i]])
     }
 
-    /// The derivative of the rigid slip at element i by xi (0), eta (1) or phi (2).
+    /// The derivative of the rigid slip at element i by the creepage xi (`creepage` is 0), the creepage eta (1) or the spin phi (2).
     pub fn rigid_slip_by(&self, grid: &Grid, i: usize, creepage: usize) -> [f64; 2] {
         let mut unit = Friction { prescribed: [Prescribed::Creepage(0.0); 2], spin: 0.0, rigid_slip: None, ..*self };
         match creepage {

@@ -1,4 +1,4 @@
-//! Bounds of tractions with a law or a layer, and the checks of these.
+//! Whether the traction bounds depend on the slip (by a friction law or a plastic layer), and the checks of laws and layers.
 
 use super::friction::{Friction, Motion};
 use super::friction_law::{ordinary, zero_or_ordinary, Branch};
@@ -8,17 +8,17 @@ use crate::powers::LARGEST;
 use crate::scene::Bodies;
 
 impl Friction<'_> {
-    /// Whether the bounds depend on the slip, so that [`law`](crate::friction::law) solves the tangential problem.
+    /// Whether the traction bounds depend on the slip, so that [`law`](crate::friction::law) solves the tangential problem.
     pub fn has_law(&self) -> bool {
         self.law.is_some() || self.layer.is_some_and(|layer| layer.hardening != 0.0)
     }
 
-    /// Whether the bounds depend on the history of the interface's particles.
+    /// Whether the traction bounds depend on the history of the particles of the interface.
     pub fn has_memory(&self) -> bool {
         self.law.is_some_and(|law| law.memory_distance > 0.0) || self.layer.is_some_and(|layer| layer.hardening != 0.0)
     }
 
-    /// The duration of a step for a law's speed; 1 without a law.
+    /// The duration of the step, by which a law divides the slip to get the slip velocity. 1 without a law.
     pub fn duration(&self, grid: &Grid) -> f64 {
         match (self.law, self.motion) {
             (None, _) => 1.0,
@@ -27,23 +27,23 @@ impl Friction<'_> {
         }
     }
 
-    /// Whether a layer bounds the tractions by limits that do not depend on the slip.
+    /// Whether a plastic layer bounds the tractions, and the bounds do not depend on the slip.
     pub fn has_ideal_layer(&self) -> bool {
         self.layer.is_some() && !self.has_law()
     }
 
-    /// The coefficients of particles before the step; none are read without a law or a layer that changes.
+    /// The coefficients of friction of the particles before the step. None: they are not given, or the bounds do not depend on the slip.
     pub(crate) fn coefficients_read(&self) -> Option<&[f64]> {
         self.coefficients_before.filter(|_| self.has_law())
     }
 
-    /// The yield limits of particles before the step; none are read without a layer.
+    /// The yield limits of the particles before the step. None: they are not given, or there is no plastic layer.
     pub(crate) fn yield_limits_read(&self) -> Option<&[f64]> {
         self.yield_limits.filter(|_| self.layer.is_some())
     }
 }
 
-/// Refuses invalid laws, layers and histories, and those that are not solved with the rest.
+/// Refuses invalid laws, layers and histories, and options of friction that are not solved together with a law.
 pub(super) fn check_law(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     if let Some(law) = &friction.law {
         law.check(friction.motion == Motion::Shift)?;
@@ -80,18 +80,18 @@ pub(super) fn check_law(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     Ok(())
 }
 
-/// Refuses unlike bodies with a law.
+/// Refuses a law for bodies whose normal and tangential problems are coupled.
 pub(super) fn check_bodies_of_law(friction: &Friction<'_>, bodies: &Bodies) -> Result<()> {
     let has_cross = friction.influence.is_some_and(|influence| influence.cross.is_some());
-    let is_unlike = friction.influence.is_none() && bodies.unlike() != 0.0;
-    if friction.has_law() && (has_cross || is_unlike) {
+    let are_unlike = friction.influence.is_none() && bodies.unlike() != 0.0;
+    if friction.has_law() && (has_cross || are_unlike) {
         let name = if friction.law.is_some() { "friction->law" } else { "friction->hardening" };
         return Err(Error::Unsupported(format!("{name} is given: bodies must be alike")));
     }
     Ok(())
 }
 
-/// Refuses an invalid yield limit before the step, which may have fallen to a thousandth of that of fresh material.
+/// Refuses an invalid yield limit of a particle before the step. The limit may have softened to a thousandth of that of fresh material.
 fn kept_limit(name: &str, limit: f64) -> Result<()> {
     let rule = "it must be positive, from 1e-143 to 1e140: choose other units";
     require((1e-3 / LARGEST..=LARGEST).contains(&limit), name, limit, rule)

@@ -1,4 +1,4 @@
-//! Friction as an effect: the effects that it excludes, and the checks of its steps, tables and numbers.
+//! Friction as an [`Effect`]: which effects it excludes, and the checks of steps, tables and numbers.
 
 use std::f64::consts::PI;
 
@@ -13,13 +13,13 @@ use crate::influence::Coefficients;
 use crate::powers::LARGEST;
 use crate::scene::Plain;
 
-/// Longest step of rolling, in elements.
+/// The longest step of rolling, in elements.
 const LONGEST_STEP: f64 = 1e6;
-/// Shortest step of steady rolling, in elements.
+/// The shortest step of steady rolling, in elements.
 const SHORTEST_STEADY_STEP: f64 = 0.1;
 const OTHER_UNITS: &str = "friction needs numbers below 1e140: choose other units";
 
-/// Distance from a whole number of elements up to which a step of rolling counts as whole.
+/// For the caller's tables, a step of rolling counts as one of whole elements if it differs from a whole number by at most this.
 const WHOLE_STEP: f64 = 1e-9;
 
 /// Why a solve on several grids is refused.
@@ -39,14 +39,14 @@ impl Effect for Friction<'_> {
 
     fn properties(&self) -> Properties<'_> {
         let has_particles = self.law.is_some() || self.layer.is_some();
-        // The library has no tangential coefficients for these effects; the caller may give them.
+        // The library has no tangential coefficients for these effects. For `influence` and `row_tables` the caller may give them.
         let excludes: &[&str] = match self.influence {
             Some(influence) if influence.cross.is_none() => &["adhesion", "period", "patches"],
-            // The coupling that a caller gives is not solved together with these effects.
+            // The caller's coupling coefficients are not used together with these effects.
             Some(_) => &["adhesion", "row_tables", "period", "patches", "coating"],
             None => &["adhesion", "influence", "row_tables", "period", "patches"],
         };
-        // Laws and layers need pressures; adhesion gives only bounds.
+        // Laws and layers exclude adhesion, the first in the list: they need the pressures, and adhesion gives only traction bounds.
         let excludes = if has_particles { excludes } else { &excludes[1..] };
         let continues = (self.previous == Previous::Kept).then_some(CONTINUES);
         let has_history = has_particles && (self.coefficients_before.is_some() || self.yield_limits.is_some());
@@ -103,7 +103,7 @@ impl Effect for Friction<'_> {
         rolled_towards::check_pressures(self, grid, coefficients)
     }
 
-    // No set-up depends on friction: it may differ in each solve. The solver itself keeps the tangential tables.
+    // The record of a set-up has no values of friction, which may differ in each solve. The solver itself keeps the tangential tables.
     fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
 
     fn gives_way(&self, _scene: &Plain<'_>) -> bool {
@@ -115,7 +115,7 @@ impl Effect for Friction<'_> {
     }
 }
 
-/// Checks friction except its law.
+/// Checks friction, except the law and the layer.
 fn check(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     check_numbers(friction)?;
     check_coefficients(friction, grid)?;
@@ -124,7 +124,7 @@ fn check(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     check_influence(friction, grid)
 }
 
-/// Refuses steps longer than any grid, and steps of steady rolling that are too short for the elements.
+/// Refuses steps of rolling that are longer than [`LONGEST_STEP`], and steps of steady rolling shorter than [`SHORTEST_STEADY_STEP`].
 fn check_step(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     let (name, distance) = ("friction->rolling_distance", friction.distance(grid));
     let (x, y) = friction.elements_rolled(grid);
@@ -156,10 +156,9 @@ fn check_range(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     {
         require(slip.abs() < LARGEST, "the rigid slip by friction->creepage and spin", slip, OTHER_UNITS)?;
     }
-    for (name, own) in
-        ["friction->rigid_slip[0]", "friction->rigid_slip[1]"].iter().zip(friction.rigid_slip.iter().flatten())
-    {
-        check_values(name, own, grid, small)?;
+    let slips = ["friction->rigid_slip[0]", "friction->rigid_slip[1]"];
+    for (name, slip) in slips.iter().zip(friction.rigid_slip.iter().flatten()) {
+        check_values(name, slip, grid, small)?;
     }
     let weights = ["friction->creepage_weight[0]", "friction->creepage_weight[1]"];
     for (name, weights) in weights.iter().zip(friction.weights.iter().flatten()) {
@@ -173,7 +172,7 @@ fn check_range(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     let Previous::Given(before) = friction.previous else { return Ok(()) };
     for (name, q) in ["friction->previous_traction[0]", "friction->previous_traction[1]"].iter().zip(before) {
         match friction.motion {
-            // Previous tractions only start the iteration.
+            // Here previous tractions are only an initial guess.
             Motion::SteadyRolling => check_values(name, q, grid, finite)?,
             _ => check_values(name, q, grid, small)?,
         }
@@ -181,7 +180,7 @@ fn check_range(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     Ok(())
 }
 
-/// Refuses invalid coefficients and compliances.
+/// Refuses invalid coefficients of friction, and invalid compliances of the layer.
 fn check_coefficients(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     let coefficient = |name: &str, mu: f64| {
         let rule = "a coefficient of friction must be 0 or more, and below 1e140";
@@ -194,7 +193,7 @@ fn check_coefficients(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     friction.compliance.check(["friction->compliance", "friction->compliances"], grid, compliance)
 }
 
-/// Refuses invalid numbers.
+/// Refuses creepages, forces, spins and steps that are not finite or out of their range.
 fn check_numbers(friction: &Friction<'_>) -> Result<()> {
     for (k, prescribed) in friction.prescribed.iter().enumerate() {
         match prescribed {
@@ -217,7 +216,7 @@ fn check_numbers(friction: &Friction<'_>) -> Result<()> {
     require(direction.abs() <= 2.0 * PI, "friction->rolling_direction", direction, turns)
 }
 
-/// Refuses tables that do not suit the grid or the step: they have no coefficients between whole offsets.
+/// Refuses the caller's tables if they do not suit the grid or the step: tables have no coefficients between whole offsets.
 fn check_influence(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     let Some(influence) = &friction.influence else { return Ok(()) };
     if friction.motion != Motion::Shift {

@@ -1,10 +1,10 @@
-//! Friction with a coefficient that falls with the slip velocity, and a layer between the bodies that yields. See
-//! [`friction::law`](crate::friction::law) for the problem.
+//! Coefficients of friction that fall with the slip velocity, and a layer between the bodies that yields. See [`friction::law`](crate::friction::law)
+//! for the problem.
 
 use crate::error::{not_negative, positive, require, Result};
 use crate::powers::LARGEST;
 
-/// How a coefficient of friction falls with the slip velocity v. It has two falling parts, each with its own half speed h.
+/// How the falling parts f of a coefficient of friction depend on the slip velocity v. A coefficient has two falling parts, each with a half speed h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fall {
     /// `max(0, 1 - v/(2 h))` for both parts.
@@ -15,16 +15,16 @@ pub enum Fall {
     Exponential,
 }
 
-/// The wanted solution: there may be several if the traction bounds fall with the slip.
+/// The wanted solution. There may be several solutions if the traction bounds fall with the slip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Branch {
-    /// The solution near the start, the fastest to find. If the iteration finds none and no force is given, turns of `Low` give it another
-    /// start.
+    /// The solution near the initial guess, which takes the least time. If the iteration finds none and no force is prescribed, it starts again from
+    /// an iterate of `Low`.
     #[default]
     Near,
-    /// The solution reached from the traction bounds of no slip.
+    /// The solution of an iteration that starts from the traction bounds without slip.
     Low,
-    /// The solution reached from the traction bounds of unlimited slip.
+    /// The solution of an iteration that starts from the traction bounds of unlimited slip.
     High,
 }
 
@@ -35,34 +35,34 @@ pub enum Branch {
 /// mu      = t mu_v + (1 - t) mu_s(v),    t = c/(c + dt max(v, v0))      c: memory_distance, v0: memory_speed, mu_v: mu before the step
 /// ```
 ///
-/// dt is the duration of the step. The kinds of fall are those of CONTACT (L = 2, 3, 4). Polach's law is `Exponential` with kinetic A,
-/// falling 1 - A and half speed ln 2/B.
+/// dt is the duration of the step. f_1 and f_2 are those of [`Fall`]: the laws of CONTACT (L = 2, 3, 4). Polach's law is `Exponential` with
+/// kinetic A, falling 1 - A and half speed ln 2/B.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionLaw {
-    /// How the coefficient falls.
+    /// How both falling parts depend on the slip velocity.
     pub fall: Fall,
-    /// The part that remains at high speed; only ratios to `falling` count.
+    /// The part that remains at high slip velocity. Only the ratios of `kinetic` and `falling` matter.
     pub kinetic: f64,
-    /// The part that falls, in two terms.
+    /// The two parts that fall.
     pub falling: [f64; 2],
-    /// The slip velocity at which each part has fallen to a half.
+    /// The slip velocity at which each falling part is a half of its value at rest.
     pub half_speed: [f64; 2],
-    /// The speed of rolling. A step lasts for the distance rolled divided by this speed.
+    /// The speed of rolling. The duration of a step is the distance rolled divided by this speed.
     pub speed: f64,
     /// The duration of a shift.
     pub time_step: f64,
-    /// The distance of slip over which mu approaches mu_s; 0: at once.
+    /// c, the distance of slip over which mu approaches mu_s. 0: mu is mu_s at once.
     pub memory_distance: f64,
     /// v0: below this slip velocity mu approaches mu_s as fast as at v0.
     pub memory_speed: f64,
 }
 
-/// A layer between the bodies that yields: `|q| <= min(mu p, yield + hardening * slip)`.
+/// A plastic layer between the bodies: `|q| <= min(mu p, yield_limit + hardening * plastic slip)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlasticLayer {
     /// The yield limit of fresh material, a traction.
     pub yield_limit: f64,
-    /// The change of the limit per plastic slip, a traction per length. Negative: the layer softens, down to a thousandth of `yield_limit`.
+    /// The change of the yield limit per plastic slip, a traction per length. Negative: the layer softens, down to a thousandth of `yield_limit`.
     pub hardening: f64,
 }
 
@@ -89,7 +89,7 @@ impl FrictionLaw {
             if part == 0.0 {
                 continue;
             }
-            let (f, d) = match (self.fall, k) {
+            let (f, derivative) = match (self.fall, k) {
                 (Fall::Linear, _) if v < 2.0 * h => (1.0 - 0.5 * v / h, -0.5 / h),
                 (Fall::Linear, _) => (0.0, 0.0),
                 (Fall::Rational, 0) => (1.0 / (1.0 + v / h), -1.0 / h / (1.0 + v / h).powi(2)),
@@ -102,13 +102,13 @@ impl FrictionLaw {
                     (f, -std::f64::consts::LN_2 * f / h)
                 }
             };
-            (value, slope) = (value + part * f, slope + part * d);
+            (value, slope) = (value + part * f, slope + part * derivative);
         }
         let at_rest = self.kinetic + self.falling[0] + self.falling[1];
         (value / at_rest, slope / at_rest)
     }
 
-    /// Refuses invalid numbers. The step lasts for `time_step` if it `is_shift`; otherwise `speed` determines its duration.
+    /// Refuses invalid numbers. Of `time_step` and `speed` it checks only the one that determines the duration: `time_step` if the motion `is_shift`.
     pub(super) fn check(&self, is_shift: bool) -> Result<()> {
         not_negative("friction->kinetic", self.kinetic)?;
         for k in 0..2 {
@@ -127,7 +127,7 @@ impl FrictionLaw {
     }
 }
 
-/// Refuses a number whose products with a few others may be infinite or 0.
+/// Refuses a number that is not positive, or so large or small that products with a few such numbers may be infinite or 0.
 pub(super) fn ordinary(name: &str, value: f64) -> Result<()> {
     let rule = "it must be positive, from 1e-140 to 1e140: choose other units";
     require((1.0 / LARGEST..=LARGEST).contains(&value), name, value, rule)

@@ -8,7 +8,7 @@ use crate::grid::Grid;
 use crate::influence::{self, Coefficients};
 use crate::scene::Plain;
 
-/// The compliance c of the layer: length per pressure, as influence coefficients. If it is 0 everywhere, there is no layer.
+/// The compliance c of the layer: a length per pressure, as influence coefficients have. If c is 0 on all elements, there is no layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer<'a>(pub Each<'a>);
 

@@ -1,24 +1,25 @@
-//! Bodies with a memory of earlier steps: a step is a normal problem with another compliance.
+//! Bodies whose displacements depend on earlier steps. One step in time of such bodies is a normal problem with another compliance s and an
+//! additional displacement H of the surfaces. s and H are known before the step:
 //!
 //! ```text
-//! e = h + H - approach + s A p          s, H: known before the step
-//! e/s = (h + H)/s - approach/s + A p    the problem of the set-up, in scaled lengths
+//! e = h + H - approach + s A p
+//! e/s = (h + H)/s - approach/s + A p    divided by s: the elastic problem with all lengths divided by s
 //! ```
 //!
-//! Pressures, forces, limits and all operators are unchanged.
+//! So pressures, forces, pressure limits and the operator A are those of the elastic problem.
 
 use super::coupled::History;
 use crate::contact::State;
 use crate::visco::Report;
 
-/// A step of bodies with memory.
+/// One step in time of bodies whose displacements depend on earlier steps.
 pub trait Memory {
-    /// s.
+    /// The compliance s of the step, relative to the instantaneous one.
     fn compliance(&self) -> f64;
 
-    /// H of each element, from the history.
+    /// Writes H of each element, which the history determines, to `displacement`.
     fn fill(&self, history: &History, displacement: &mut [f64]);
 
-    /// Updates the history after a step. `state` has the pressures and A p, and the distances of the problem solved.
+    /// Updates the history after the step. `state` holds the pressures, u = A p, and the lengths of the elastic problem, which are divided by s.
     fn step_done(&self, history: &mut History, state: &State) -> Report;
 }

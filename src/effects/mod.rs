@@ -1,11 +1,13 @@
-//! The effects that a scene may name beside its bodies: one file per effect, and the list of them.
+//! The effects that a scene may have beside its bodies: friction, a coating, a period, ...; one file for each effect, and the list of all.
 //!
-//! Each effect states what excludes it, which methods and calls take it, and what it changes: [`Properties`]. docs/effects.md has tables for users.
+//! The [`Properties`] of an effect state which effects it excludes, which methods and calls solve it, and what it changes. docs/effects.md has tables
+//! for users.
 //!
-//! A new effect is a file with an `impl Effect`, its `mod`, and a line in the list (`list.rs`), which makes it a field of
-//! [`Scene`](crate::scene::Scene). Effects act in the order of the list; `together.rs` joins the properties of all effects of a scene. A problem
-//! solved in turns with the normal one, or with a state from step to step, is [`Coupled`]; `tests/unit/foundation.rs` is an example. The memory of
-//! the bodies themselves is [`Memory`].
+//! A new effect needs a file with an `impl Effect`, a line `mod` here, and a line in the list (`list.rs`). The line in the list makes the effect a
+//! field of [`Scene`](crate::scene::Scene). Effects act in the order of the list. `together.rs` joins the properties of all effects of a scene.
+//!
+//! An effect whose equations are solved in turns with the normal problem returns a [`Coupled`] problem; `tests/unit/foundation.rs` is an example. An
+//! effect of bodies whose displacements depend on earlier steps returns a [`Memory`].
 
 mod adhesion;
 mod coating;

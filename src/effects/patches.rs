@@ -1,4 +1,5 @@
-//! Effect: several contact patches on one grid, whose interaction is scaled. See [`influence::Patches`](crate::influence::Patches).
+//! Effect: several contact patches on one grid. A factor scales the influence of the elements of one patch on those of another one. See
+//! [`influence::Patches`](crate::influence::Patches).
 
 use super::effect::{Effect, Value};
 use super::properties::{Properties, Stresses};
@@ -11,22 +12,23 @@ use crate::scene::Plain;
 /// The largest number of patches. Each patch adds one product by FFT.
 pub const MOST_PATCHES: usize = 64;
 
-/// Marks an element without a patch, which has no surface.
+/// The number of the patch of an element that belongs to no patch. Such an element has no surface and stays exterior.
 pub const NO_PATCH: i32 = -1;
 
-/// The patch of each element, and the factors between patches.
+/// The patch of each element, and the factors of the influence between patches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patches<'a> {
     /// Number of patches.
     pub count: usize,
     /// The patch of each element, `[my][mx]`: 0 to count - 1, or -1 for none.
     pub patch: &'a [i32],
-    /// `[count][count]`, symmetric, 1 on the diagonal; 0: independent, 1: as if there were no patches.
+    /// The factor between each pair of patches, in [0, 1]: `[count][count]`, symmetric, 1 on the diagonal. 0: the two patches do not influence each
+    /// other; 1: their influence is unchanged.
     pub factors: &'a [f64],
 }
 
 impl Patches<'_> {
-    /// The patch that element i has in the coefficients. An element without a patch has the first one.
+    /// The patch to which element i belongs in the coefficients. An element without a patch counts there as one of the first patch.
     pub fn of(&self, i: usize) -> usize {
         self.patch[i].max(0) as usize
     }
@@ -83,12 +85,12 @@ impl Effect for Patches<'_> {
             if a == b && factor != 1.0 {
                 return invalid(format!("{name} is {}; within a patch it must be 1", Number(factor)));
             }
-            let turned = self.factors[b * count + a];
-            if b < a && factor != turned {
+            let transposed = self.factors[b * count + a];
+            if b < a && factor != transposed {
                 return invalid(format!(
                     "{name} is {}, of ({b}, {a}) {}; factors must be symmetric",
                     Number(factor),
-                    Number(turned)
+                    Number(transposed)
                 ));
             }
         }
@@ -120,7 +122,7 @@ impl Effect for Patches<'_> {
         if !self.patch.contains(&NO_PATCH) {
             return Ok(None);
         }
-        let of = |(h, patch): (&f64, &i32)| if *patch == NO_PATCH { f64::INFINITY } else { *h };
-        Ok(Some(collected(h.iter().zip(self.patch).map(of), "the undeformed distance of patches")?))
+        let distance = |(h, patch): (&f64, &i32)| if *patch == NO_PATCH { f64::INFINITY } else { *h };
+        Ok(Some(collected(h.iter().zip(self.patch).map(distance), "the undeformed distance of patches")?))
     }
 }

@@ -1,6 +1,6 @@
 //! Effect: the scene is periodic in x, in y or in both. The grid is one period.
 //!
-//! [`Periodic`](crate::influence::Periodic) describes the coefficients and the origin of the approach.
+//! [`Periodic`](crate::influence::Periodic) describes the coefficients and from which plane the approach counts.
 
 use std::sync::Arc;
 
@@ -12,16 +12,16 @@ use crate::influence::{HalfSpace, Kernel, Periodic};
 use crate::scene::{Load, Plain};
 use crate::sums::mean;
 
-/// The message for an approach on a given contact area that is the whole grid.
+/// The message that refuses a given approach if the given contact area is the whole grid.
 const FULL: &str = "active_set is FIXED and all elements are in contact; with two periods the approach is relative to the mean plane, \
      and any force fits: prescribe the force";
 
-/// The directions in which the scene repeats: after `mx dx` in x, after `my dy` in y.
+/// The directions in which the scene is periodic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Period {
-    /// In x.
+    /// Whether the scene is periodic in x, with the period `mx dx`.
     pub x: bool,
-    /// In y.
+    /// Whether the scene is periodic in y, with the period `my dy`.
     pub y: bool,
 }
 
@@ -51,8 +51,8 @@ impl Effect for Period {
         Ok(())
     }
 
-    // With two periods the mean displacement is zero. So the mean deformed distance is mean(h) - approach, whatever the force. If it is zero, contact
-    // is full and any force satisfies the conditions; if it is negative, no pressures do. Such approaches are refused.
+    // With two periods the mean displacement is zero, so the mean deformed distance is mean(h) - approach for any force. If this mean is zero,
+    // contact is full and any force satisfies the conditions. If this mean is negative, no pressures do. Such approaches are refused.
     fn check_area(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>], given: Option<&[bool]>) -> Result<()> {
         let (Load::Approach(approach), true, true) = (scene.load, self.x, self.y) else { return Ok(()) };
         if others.iter().flatten().any(|other| other.gives_way(scene)) {

@@ -1,7 +1,7 @@
 //! Effect: pressures do not exceed a limit, the hardness of the softer surface: `0 <= p <= p_max`.
 //!
-//! An elastic body with a perfectly plastic surface (Polonsky & Keer 1999, section 2; the limit is about 2.8 yield stresses): at the
-//! limit the surface yields, and the deformed distance e is minus the depth of its indentation.
+//! This is an elastic body with a perfectly plastic surface (Polonsky & Keer 1999, section 2). The limit is about 2.8 yield stresses. Where the
+//! pressure is at the limit, the surface yields, and -e is the depth of the plastic indentation.
 //!
 //! ```text
 //! p = 0,          e >= 0    in the exterior area
@@ -51,23 +51,24 @@ impl Effect for PressureLimit<'_> {
         self.0.check(["pressure_limit->limit", "pressure_limit->limits"], grid, require)
     }
 
-    // Elements at their limit yield, so bodies can approach beyond their mean distance.
+    // Elements at their limit yield, so the approach can exceed the mean undeformed distance.
     fn gives_way(&self, scene: &Plain<'_>) -> bool {
-        let is_held = |(h, limit): (&f64, f64)| h.is_finite() && limit < f64::INFINITY;
+        let may_yield = |(h, limit): (&f64, f64)| h.is_finite() && limit < f64::INFINITY;
         let h = scene.undeformed_distance.iter();
         match self.0 {
-            Each::Uniform(limit) => h.zip(std::iter::repeat(limit)).any(is_held),
-            Each::PerElement(limits) => h.zip(limits.iter().copied()).any(is_held),
+            Each::Uniform(limit) => h.zip(std::iter::repeat(limit)).any(may_yield),
+            Each::PerElement(limits) => h.zip(limits.iter().copied()).any(may_yield),
         }
     }
 
-    // Refuses a force that exceeds the sum of all limits.
+    // Refuses a force that exceeds the sum of p_max dx dy over all elements with a surface.
     fn check_load(&self, scene: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<()> {
         self.check(&scene.grid)?;
         let Load::Force(force) = scene.load else { return Ok(()) };
         let h = scene.undeformed_distance;
         let surface = |block: Range<usize>| block.filter(|&i| h[i].is_finite());
-        // In blocks, or as a product: the error of a plain sum of many equal limits exceeds that allowed for a force.
+        // A uniform limit is multiplied, others are summed in blocks. A plain sum of many equal limits would have a larger error than the one that is
+        // allowed below.
         let limits = match self.0 {
             Each::Uniform(limit) => surface(0..h.len()).count() as f64 * limit,
             Each::PerElement(limits) => {
@@ -76,7 +77,7 @@ impl Effect for PressureLimit<'_> {
             }
         };
         let greatest = limits * scene.grid.element_area();
-        // A sum of n terms has an error of some units of round-off.
+        // ROUND_OFF allows for the round-off of the sum.
         if force > greatest * (1.0 + ROUND_OFF) {
             return Err(Error::Infeasible(format!(
                 "force is {}; with this pressure_limit the greatest force that can be carried is {}",
@@ -87,7 +88,7 @@ impl Effect for PressureLimit<'_> {
         Ok(())
     }
 
-    // The limit may differ in each solve.
+    // The set-up of a solver does not depend on the limit, which may differ in each solve.
     fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
 
     fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {

@@ -1,6 +1,6 @@
-//! Effects: the caller's coefficients, one table for all elements (`influence`) or one per loaded row (`row_tables`).
+//! Effects: the caller's influence coefficients of pressures, in one table for all elements (`influence`) or one table per loaded row (`row_tables`).
 //!
-//! Later scenes of a handle need not name them again: the handle keeps them.
+//! A handle keeps the tables, so later scenes may leave them out.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::grid::Grid;
 use crate::influence::{Kernel, RowTables, Table};
 use crate::scene::Plain;
 
-/// Why refinement to an accuracy is refused.
+/// Why a solve on several grids is refused.
 const ONE_GRID: &str = "own coefficients are those of one grid, and an accuracy needs several";
 
 impl Effect for Table {

@@ -1,10 +1,10 @@
-//! Checks of the caller's tangential influence coefficients, one table per loaded row.
+//! Checks of the caller's tangential influence coefficients that have one table per loaded row. With displacements u by tractions q:
 //!
 //! ```text
 //! u_x(ix, iy) = sum over jy and jx of  xx_jy(iy, k) qx(jx, jy) + xy_jy(iy, k) qy(jx, jy)          k = ix - jx
 //! u_y(ix, iy) =                        yx_jy(iy, k) qx(jx, jy) + yy_jy(iy, k) qy(jx, jy)
 //!
-//! xx_jy(iy, k) = xx_iy(jy, -k),   yy alike,   yx_jy(iy, k) = xy_iy(jy, -k)           the operator is symmetric as a whole
+//! xx_jy(iy, k) = xx_iy(jy, -k),   yy alike,   yx_jy(iy, k) = xy_iy(jy, -k)           because the operator is symmetric
 //! ```
 
 use toeplitz::coefficients::SYMMETRY;
@@ -19,14 +19,15 @@ const NAMES: [&str; 3] =
     ["friction->row_tables[0] (xx)", "friction->row_tables[1] (yy)", "friction->row_tables[2] (xy)"];
 
 impl TangentialInfluence<'_> {
-    /// `xx, yy, xy, yx` of a loaded row jy and a displaced row iy at an offset in x, `|kx| < cx`.
+    /// The coefficients `[xx, yy, xy, yx]` of the loaded row jy and the displaced row iy at an offset kx in x, `|kx| < cx`.
     pub fn of_rows(&self, jy: usize, iy: usize, kx: i64) -> [f64; 4] {
-        let at = |jy: usize, iy: usize, kx: i64| (jy * self.cy + iy) * 2 * self.cx + (kx + self.cx as i64) as usize;
-        let [xx, yy, xy] = self.coefficients.map(|values| self.scale * values[at(jy, iy, kx)]);
-        [xx, yy, xy, self.scale * self.coefficients[2][at(iy, jy, -kx)]]
+        let index = |jy: usize, iy: usize, kx: i64| (jy * self.cy + iy) * 2 * self.cx + (kx + self.cx as i64) as usize;
+        let [xx, yy, xy] = self.coefficients.map(|values| self.scale * values[index(jy, iy, kx)]);
+        [xx, yy, xy, self.scale * self.coefficients[2][index(iy, jy, -kx)]]
     }
 
-    /// Refuses tables per loaded row that are not those of a grid, and operators that are not symmetric.
+    /// Refuses tables per loaded row whose sizes do not suit the grid, and coefficients that no elastic body has: that are not finite, not symmetric,
+    /// or larger than those of an element on itself.
     pub(super) fn check_rows(&self, grid: &Grid) -> Result<()> {
         let TangentialInfluence { cx, cy: rows, scale, .. } = *self;
         require(scale > 0.0 && scale.is_finite(), "friction->row_tables->scale", scale, SCALE)?;
@@ -48,8 +49,8 @@ impl TangentialInfluence<'_> {
         (0..rows).try_for_each(|jy| (0..=jy).try_for_each(|iy| self.check_pair((jy, iy), largest)))
     }
 
-    /// Refuses coefficients that are not finite, and coefficients of an element on itself that are not positive. Returns the largest of the
-    /// latter.
+    /// Refuses coefficients that are not finite, and coefficients xx and yy of an element on itself that are not positive. Returns the largest
+    /// coefficient of an element on itself.
     fn check_finite_and_own(&self) -> Result<f64> {
         let (rows, width, mut largest) = (self.cy, 2 * self.cx, 0.0_f64);
         for (component, (values, name)) in self.coefficients.iter().zip(NAMES).enumerate() {
@@ -79,7 +80,8 @@ impl TangentialInfluence<'_> {
         Ok(largest)
     }
 
-    /// Refuses tables of two rows on each other that are not symmetric to round-off, or larger than any coefficient of an element on itself.
+    /// Refuses the coefficients between two rows if they are not symmetric to round-off, or if one exceeds `largest`, the largest coefficient of an
+    /// element on itself.
     fn check_pair(&self, (jy, iy): (usize, usize), largest: f64) -> Result<()> {
         for kx in 1 - self.cx as i64..self.cx as i64 {
             let (one, other) = (self.of_rows(jy, iy, kx), self.of_rows(iy, jy, -kx));
@@ -92,12 +94,12 @@ impl TangentialInfluence<'_> {
                 return Err(Error::Unsupported(format!("{} is {a} {places}; {rule}", NAMES[component])));
             }
             if let Some(component) = (0..4).find(|&component| one[component].abs() > LARGEST_RATIO * largest) {
-                // yx of two rows is the xy of these rows the other way round.
+                // Component 3, yx, is the xy of the table of row iy.
                 let (jy, iy, kx) = if component < 3 { (jy, iy, kx) } else { (iy, jy, -kx) };
                 let (name, value, own) = (NAMES[component.min(2)], Number(one[component]), Number(largest));
                 return Err(Error::NotPositiveDefinite(format!(
-                    "{name} of rows (jy {jy}, iy {iy}) at offset {kx} is {value}, and at most {own} of an element on itself: no elastic body moves another \
-                     element more than the one that is pulled"
+                    "{name} of rows (jy {jy}, iy {iy}) at offset {kx} is {value}, and at most {own} of an element on itself: no elastic body moves \
+                     another element more than the one that is pulled"
                 )));
             }
         }

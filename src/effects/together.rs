@@ -1,4 +1,4 @@
-//! The joined properties of all effects of a scene.
+//! What all effects of a scene require together: the coefficients, the checks, and the joined [`Properties`].
 
 use std::sync::Arc;
 
@@ -15,25 +15,26 @@ use crate::threads::Threads;
 /// The functions that need the whole [list](super::list) of effects.
 macro_rules! define_list {
     ($($(#[doc = $doc:literal])+ $(#[cfg($when:meta)])? $name:ident: $effect:ty,)+) => {
-        /// Number of effects.
+        /// The number of effects in the list.
         pub const COUNT: usize = [$($(#[cfg($when)])? stringify!($name)),+].len();
 
-        /// The place of an effect in the list.
+        /// The index of an effect in the list. None: there is no effect `name`.
         pub fn place(name: &str) -> Option<usize> {
             [$($(#[cfg($when)])? stringify!($name)),+].iter().position(|known| *known == name)
         }
 
-        /// The effects of a scene in the order of the list; none where the scene does not name the effect or it [has no effect](Effect::is_one).
+        /// One entry for each effect of the list. None: the scene does not have the effect, or its values [change nothing](Effect::is_one).
         pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] {
             let plain = &scene.plain();
-            [$($(#[cfg($when)])? of(&scene.$name, plain)),+]
+            [$($(#[cfg($when)])? effective(&scene.$name, plain)),+]
         }
     };
 }
 
 with_effects!(define_list);
 
-fn of<'s, E: Effect>(effect: &'s Option<E>, scene: &Plain<'_>) -> Option<&'s (dyn Effect + 's)> {
+/// The effect, if there is one that [changes something](Effect::is_one).
+fn effective<'s, E: Effect>(effect: &'s Option<E>, scene: &Plain<'_>) -> Option<&'s (dyn Effect + 's)> {
     effect.as_ref().filter(|effect| effect.is_one(scene)).map(|effect| effect as &dyn Effect)
 }
 
@@ -42,12 +43,12 @@ pub fn effects<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = &'s dyn Effect>
     list(scene).into_iter().flatten()
 }
 
-/// The first effect with an answer: its name and the answer.
-fn first<'s, T>(scene: &'s Scene<'_>, answer: impl Fn(Properties<'s>) -> Option<T>) -> Option<(&'static str, T)> {
-    effects(scene).find_map(|effect| Some((effect.name(), answer(effect.properties())?)))
+/// Among the effects of a scene, finds the first one that has a property. Returns the name of the effect, and the property.
+fn first<'s, T>(scene: &'s Scene<'_>, property: impl Fn(Properties<'s>) -> Option<T>) -> Option<(&'static str, T)> {
+    effects(scene).find_map(|effect| Some((effect.name(), property(effect.properties())?)))
 }
 
-/// Checks each effect of a scene, and refuses pairs that are not solved.
+/// Checks each effect of a scene, and refuses pairs that are not solved together.
 pub fn check_effects(scene: &Scene<'_>) -> Result<()> {
     for effect in effects(scene) {
         effect.check(&scene.grid)?;
@@ -58,81 +59,76 @@ pub fn check_effects(scene: &Scene<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Refuses an effect if `is_there` holds for one that it excludes. `say(other)` begins the message.
+/// Refuses `effect` if it excludes an effect for which `is_present` holds. The message begins with `beginning(other)`.
 pub(super) fn refuse_together(
     effect: &dyn Effect,
-    is_there: impl Fn(&str) -> bool,
-    say: impl Fn(&str) -> String,
+    is_present: impl Fn(&str) -> bool,
+    beginning: impl Fn(&str) -> String,
 ) -> Result<()> {
-    match effect.properties().excludes.iter().find(|other| is_there(other)) {
-        Some(other) => Err(Error::Unsupported(format!("{}; {}", say(other), effect.why_excluded(other)))),
+    match effect.properties().excludes.iter().find(|other| is_present(other)) {
+        Some(other) => Err(Error::Unsupported(format!("{}; {}", beginning(other), effect.why_excluded(other)))),
         None => Ok(()),
     }
 }
 
-/// Checks the caller's `coefficients` of pressures, which are not symmetric: refuses them if they do not suit an effect of the scene.
+/// Called if the caller's `coefficients` of pressures are not symmetric. Refuses coefficients that cannot be solved with an effect of the scene.
 pub fn check_coefficients(scene: &Scene<'_>, coefficients: &Coefficients) -> Result<()> {
     effects(scene).try_for_each(|effect| effect.check_coefficients(&scene.grid, coefficients))
 }
 
-/// The effect that has the caller's coefficients, and their layout. With such coefficients the bodies are not used.
+/// The name of the effect that holds the caller's coefficients, and their layout. Such coefficients replace those of the bodies.
 pub fn own_coefficients(scene: &Scene<'_>) -> Option<(&'static str, Layout)> {
     first(scene, |properties| properties.own_coefficients)
 }
 
-/// Whether own coefficients replace the bodies.
+/// Whether the caller's coefficients replace those of the bodies.
 pub fn replace_bodies(scene: &Scene<'_>) -> bool {
     own_coefficients(scene).is_some()
 }
 
-/// Checks each body, and both together with the materials at their surfaces.
+/// Checks the elastic constants of each body, and those at both surfaces together.
 pub fn check_bodies(scene: &Scene<'_>) -> Result<()> {
     scene.bodies.check_each()?;
     effects(scene).find_map(|effect| effect.at_surface(&scene.plain())).unwrap_or(scene.bodies).check()
 }
 
-/// The first effect that excludes a given contact area.
+/// The first effect that cannot be solved on a given contact area.
 pub fn without_given_area(scene: &Scene<'_>) -> Option<&'static str> {
     effects(scene).find(|effect| !effect.properties().with_given_area).map(Effect::name)
 }
 
-/// The first effect that is given for one grid only, and why.
-fn one_grid(scene: &Scene<'_>) -> Option<(&'static str, &'static str)> {
-    first(scene, |properties| properties.one_grid)
-}
-
-/// Refuses effects that are given for one grid only; called before a solve on several grids.
+/// Called before a solve on several grids. Refuses effects whose values hold on one grid only.
 pub fn check_other_grids(scene: &Scene<'_>) -> Result<()> {
-    match one_grid(scene) {
+    match first(scene, |properties| properties.one_grid) {
         Some((name, why)) => Err(Error::Unsupported(format!("{name} is given; {why}"))),
         None => Ok(()),
     }
 }
 
-/// The directions in which a scene is periodic.
+/// Whether a scene is periodic in x, and in y.
 pub fn repeats(scene: &Scene<'_>) -> (bool, bool) {
     effects(scene)
         .map(|effect| effect.properties().repeats)
-        .fold((false, false), |(x, y), (of_x, of_y)| (x | of_x, y | of_y))
+        .fold((false, false), |(x, y), (repeats_x, repeats_y)| (x | repeats_x, y | repeats_y))
 }
 
-/// The largest admissible pressures of a scene; none: there are no limits.
+/// The largest admissible pressures of a scene. None: there is no limit.
 pub fn limits<'s>(scene: &'s Scene<'_>) -> Option<PressureLimit<'s>> {
     first(scene, |properties| properties.limits).map(|(_, limits)| limits)
 }
 
-/// The effects with a further problem after the normal one.
+/// The names of effects whose problem is solved after the normal one.
 pub fn beside<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = &'static str> + 's {
     effects(scene).filter(|effect| effect.properties().is_beside).map(Effect::name)
 }
 
-/// The effects whose step begins where the last one ended: place in the list, name, and how they continue.
+/// The effects whose step begins where the last one ended. For each: its index in the list, its name, and how messages call such a step.
 pub fn continuing<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = (usize, &'static str, Continues)> + 's {
-    let named = list(scene).into_iter().enumerate();
-    named.filter_map(|(k, effect)| effect.and_then(|effect| Some((k, effect.name(), effect.properties().continues?))))
+    let indexed = list(scene).into_iter().enumerate();
+    indexed.filter_map(|(k, effect)| effect.and_then(|effect| Some((k, effect.name(), effect.properties().continues?))))
 }
 
-/// The problems coupled with the normal one, each with its history.
+/// The problems that are solved in turns with the normal one, each with the history of its effect.
 pub fn coupled<'s>(scene: &'s Scene<'_>, histories: &'s mut [History; COUNT]) -> Result<Vec<Box<dyn Coupled + 's>>> {
     let (plain, mut coupled) = (scene.plain(), Vec::new());
     for (effect, history) in list(scene).into_iter().zip(histories) {
@@ -143,7 +139,7 @@ pub fn coupled<'s>(scene: &'s Scene<'_>, histories: &'s mut [History; COUNT]) ->
     Ok(coupled)
 }
 
-/// The memory of the bodies, and the place in the list of the effect that has it.
+/// The step of bodies whose displacements depend on earlier steps, and the index in the list of the effect that has this step.
 pub fn memory(scene: &Scene<'_>, histories: &mut [History; COUNT]) -> Result<Option<(usize, Box<dyn Memory>)>> {
     let (plain, list) = (scene.plain(), list(scene));
     for (k, (effect, history)) in list.iter().zip(histories).enumerate() {
@@ -154,7 +150,7 @@ pub fn memory(scene: &Scene<'_>, histories: &mut [History; COUNT]) -> Result<Opt
     Ok(None)
 }
 
-/// Ends a step: keeps the histories of the scene's effects, and drops all others.
+/// Called at the end of a step. Keeps the histories of the effects of the scene, and clears all others.
 pub fn keep(scene: &Scene<'_>, histories: &mut [History; COUNT]) {
     for (effect, history) in list(scene).into_iter().zip(histories) {
         match effect {
@@ -164,7 +160,7 @@ pub fn keep(scene: &Scene<'_>, histories: &mut [History; COUNT]) {
     }
 }
 
-/// The undeformed distance as changed by the effects of a scene; none if they do not change it.
+/// The undeformed distance with the changes by the effects of a scene. None: no effect changes the undeformed distance.
 pub fn surface(scene: &Scene<'_>) -> Result<Option<Vec<f64>>> {
     effects(scene).try_fold(None, |changed: Option<Vec<f64>>, effect| {
         let new = effect.surface(changed.as_deref().unwrap_or(scene.undeformed_distance))?;
@@ -172,13 +168,13 @@ pub fn surface(scene: &Scene<'_>) -> Result<Option<Vec<f64>>> {
     })
 }
 
-/// The first effect of a scene that MULTIGRID and FULL_MULTIGRID do not solve.
+/// The first effect of a scene that MULTIGRID and FULL_MULTIGRID do not solve, as messages call it.
 pub fn excluded_method(scene: &Scene<'_>) -> Option<&'static str> {
     first(scene, |properties| properties.without_multigrid).map(|(_, what)| what)
 }
 
 impl Scene<'_> {
-    /// The coefficients of the scene.
+    /// The influence coefficients of pressures in this scene.
     pub fn coefficients(&self) -> Result<Coefficients> {
         self.grid.check()?;
         let (plain, mut kernel) = (self.plain(), None);
@@ -192,14 +188,15 @@ impl Scene<'_> {
         effects(self).try_fold(coefficients, |coefficients, effect| effect.apply(coefficients))
     }
 
-    /// Checks everything the solver relies on: each effect, excluded pairs, and the bodies if used. Returns the least distance.
+    /// Checks everything on which the solver relies: the grid, h, the load, each effect, pairs of effects, and the bodies if they are used. Returns
+    /// the smallest undeformed distance.
     pub fn check(&self, threads: &Threads) -> Result<f64> {
         let lowest = self.check_distance_and_load(threads)?;
         self.check_effects_and_bodies()?;
         Ok(lowest)
     }
 
-    /// Checks all but the distance and the load.
+    /// Checks the grid, the effects and the bodies, but neither the undeformed distance nor the load.
     pub fn check_effects_and_bodies(&self) -> Result<()> {
         self.grid.check()?;
         check_effects(self)?;
@@ -209,7 +206,7 @@ impl Scene<'_> {
         Ok(())
     }
 
-    /// The friction of a scene whose pressures are given, with the checks of [`Effect::check_load`] for friction alone.
+    /// The friction of a scene whose pressures are given. Of all [`Effect::check_load`] it calls that of friction only.
     pub fn tangential(&self) -> Result<&Friction<'_>> {
         self.grid.check()?;
         let Some(friction) = &self.friction else {
@@ -219,14 +216,14 @@ impl Scene<'_> {
         Ok(friction)
     }
 
-    /// [`Scene::tangential`], with all checks but those of the distance and the load.
+    /// As [`Scene::tangential`], with the checks of [`Scene::check_effects_and_bodies`].
     pub fn check_tangential(&self) -> Result<&Friction<'_>> {
         let friction = self.tangential()?;
         self.check_effects_and_bodies()?;
         Ok(friction)
     }
 
-    /// Checks the members that change from solve to solve. Returns the least distance.
+    /// Checks what may change from solve to solve: the undeformed distance and the load. Returns the smallest undeformed distance.
     pub fn check_distance_and_load(&self, threads: &Threads) -> Result<f64> {
         let plain = self.plain();
         let lowest = plain.check_distance(threads)?;
@@ -236,7 +233,7 @@ impl Scene<'_> {
         Ok(lowest)
     }
 
-    /// Refuses a load that no pressures carry, unless the contact area `is_fixed`.
+    /// Refuses a load that no admissible pressures carry, unless the contact area `is_fixed`.
     pub fn check_free_load(&self, is_fixed: bool) -> Result<()> {
         self.load.check_sign(is_fixed || self.attraction().is_some())?;
         if is_fixed {
@@ -245,7 +242,7 @@ impl Scene<'_> {
         self.check_area(None)
     }
 
-    /// Refuses a load that no pressures carry, on any contact area or on the given one.
+    /// Refuses a load that no admissible pressures carry, on any contact area or on the `given` one.
     pub fn check_area(&self, given: Option<&[bool]>) -> Result<()> {
         effects(self).try_for_each(|effect| effect.check_area(&self.plain(), &list(self), given))
     }

@@ -1,4 +1,4 @@
-//! Effect: relaxing bodies. See [`visco`](crate::visco) for the equations of a step.
+//! Effect: viscoelastic bodies, and a step in time. See [`visco`](crate::visco) for the equations of a step.
 
 use super::coupled::History;
 use super::effect::{Effect, Value};
@@ -10,25 +10,25 @@ use crate::grid::Grid;
 use crate::scene::{Bodies, Load, Plain};
 use crate::visco::{Form, Series, MOST_BRANCHES};
 
-/// The branches of a body's Prony series.
+/// The branches of the Prony series of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Branches<'a> {
-    /// `G_k`, pressures >= 0; their sum is at most the body's shear modulus, the instantaneous one.
+    /// The shear moduli `G_k` >= 0 of the branches. Their sum is at most the shear modulus of the body, which is the instantaneous one.
     pub modulus: &'a [f64],
-    /// `t_k`, times > 0.
+    /// The relaxation times `t_k` > 0 of the branches.
     pub time: &'a [f64],
 }
 
-/// A step in time of relaxing bodies.
+/// A step in time of viscoelastic bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Visco<'a> {
-    /// The branches of body 1 and 2; for a coated body those of its layer.
+    /// The branches of body 1 and of body 2. For a coated body they are the branches of the coating.
     pub bodies: [Branches<'a>; 2],
-    /// The time of the step, >= 0. 0 is a jump.
+    /// The duration of the step, >= 0. 0: the load jumps.
     pub time_step: f64,
-    /// The quantity that is linear in the step. The default is the displacement for a prescribed approach, the pressures for a prescribed force.
+    /// The quantity that is linear in time during the step. None: the displacement if the approach is prescribed, the pressures if the force is.
     pub form: Option<Form>,
-    /// Whether the step begins at the end of the last one. Otherwise it begins at rest.
+    /// Whether the step begins at the end of the last step. Otherwise the bodies are at rest before the step.
     pub continues: bool,
 }
 
@@ -39,7 +39,7 @@ impl Visco<'_> {
     /// The effect's name in a scene.
     pub const NAME: &'static str = "visco";
 
-    /// The members of body 1 and 2: their counts, moduli and times.
+    /// The names of the members that hold the number of branches, the moduli and the times of each body.
     pub(crate) const MEMBERS: [[&'static str; 3]; 2] = [
         ["visco->branches[0]", "visco->modulus[0]", "visco->time[0]"],
         ["visco->branches[1]", "visco->modulus[1]", "visco->time[1]"],
@@ -50,9 +50,9 @@ impl Visco<'_> {
         self.bodies.iter().any(|branches| !branches.modulus.is_empty())
     }
 
-    /// The series of both bodies, with the moduli of the materials at their surfaces.
+    /// The Prony series of both bodies, whose instantaneous moduli are those at the surfaces.
     pub(crate) fn series(&self, at_surface: &Bodies) -> Result<[Series; 2]> {
-        let of = |b: usize| {
+        let of_body = |b: usize| {
             let (Branches { modulus, time }, g) = (self.bodies[b], at_surface.shear_modulus[b]);
             if g.is_infinite() && !modulus.is_empty() {
                 return invalid(format!(
@@ -74,15 +74,15 @@ impl Visco<'_> {
                 Ok,
             )
         };
-        Ok([of(0)?, of(1)?])
+        Ok([of_body(0)?, of_body(1)?])
     }
 
-    /// The maps of both bodies, or one map if they relax alike.
+    /// The step of each elastic body. If both relax alike, one body stands for both.
     fn bodies(&self, at_surface: &Bodies, form: Form) -> Result<Vec<Body>> {
         let series = self.series(at_surface)?;
         let compliance = |b: usize| (1.0 - at_surface.poisson_ratio[b]) / (2.0 * at_surface.shear_modulus[b]);
         let first = compliance(0) / (compliance(0) + compliance(1));
-        // Both shares add up to 1 exactly: a jump from rest then has the bits of the elastic scene.
+        // The sum of both shares is exactly 1, so a jump from rest has the bits of the elastic scene.
         let shares = [first, 1.0 - first];
         let body = |b: usize, share: f64| Body::new(&series[b], share, (self.time_step, form));
         if series[0].is_like(&series[1]) {
@@ -92,12 +92,13 @@ impl Visco<'_> {
         Ok(elastic.map(|b| body(b, shares[b])).collect())
     }
 
-    /// Rejects bodies that relax differently if the coefficients are not those of two half-spaces. `of` is the effect with these coefficients.
-    fn check_alike(&self, of: &str, scene: &Plain<'_>, at_surface: &Bodies) -> Result<()> {
+    /// Called if an `effect` (a coating, or the caller's coefficients) replaces the coefficients of two half-spaces. Refuses bodies that relax
+    /// differently, and a coating that relaxes on an elastic body.
+    fn check_alike(&self, effect: &str, scene: &Plain<'_>, at_surface: &Bodies) -> Result<()> {
         let series = self.series(at_surface)?;
         let is_coated = |b: usize| {
-            let of = |bodies: &Bodies| (bodies.shear_modulus[b], bodies.poisson_ratio[b]);
-            of(&scene.bodies) != of(at_surface)
+            let constants = |bodies: &Bodies| (bodies.shear_modulus[b], bodies.poisson_ratio[b]);
+            constants(&scene.bodies) != constants(at_surface)
         };
         for (b, series) in series.iter().enumerate() {
             if is_coated(b) && !series.is_empty() && scene.bodies.shear_modulus[b].is_finite() {
@@ -114,12 +115,12 @@ impl Visco<'_> {
             return Ok(());
         }
         Err(Error::Unsupported(format!(
-            "visco and {of} are both given, and both bodies give way, but do not relax alike; this version does not solve that"
+            "visco and {effect} are both given, and both bodies give way, but do not relax alike; this version does not solve that"
         )))
     }
 }
 
-/// The materials at the surfaces.
+/// The elastic constants at the surfaces: those of the coatings where there are any, otherwise those of the bodies.
 fn at_surface(scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Bodies {
     others.iter().flatten().find_map(|other| other.at_surface(scene)).unwrap_or(scene.bodies)
 }
@@ -143,7 +144,7 @@ impl Effect for Visco<'_> {
         }
     }
 
-    // Without branches the bodies are elastic. Invalid values count as an effect, so that the scene refuses them.
+    // Without branches the bodies are elastic. A scene has the effect also if its values are invalid, so that the scene refuses them.
     fn is_one(&self, scene: &Plain<'_>) -> bool {
         self.relaxes() || self.check(&scene.grid).is_err()
     }
@@ -175,7 +176,7 @@ impl Effect for Visco<'_> {
         }
     }
 
-    // The step may differ in each solve.
+    // The set-up of a solver depends on the branches only. The time step, the form and `continues` may differ in each solve.
     fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
         for (branches, [_, modulus, time]) in self.bodies.iter().zip(Visco::MEMBERS) {
             tell(modulus, Value::Array(branches.modulus));
@@ -187,7 +188,7 @@ impl Effect for Visco<'_> {
         false
     }
 
-    // Stresses depend on the pressures and the Poisson ratio, which is constant.
+    // The stresses depend on the pressures and on the Poisson ratio, which does not change with time.
     fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
         Stresses::Same
     }

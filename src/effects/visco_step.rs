@@ -1,46 +1,50 @@
-//! A step in time of bodies that relax, on the elements of a grid.
+//! A step in time of viscoelastic bodies, on the elements of a grid. The [equations](crate::visco) are linear in w, the instantaneous displacement of
+//! a body, and in q_k, the displacements of its dashpots.
 //!
-//! The history has A p of the last step, then the displacements of each body's dashpots, branch by branch.
+//! Field 0 of the history is A p after the last step. The further fields are q_k of each body, branch by branch.
 
 use super::coupled::History;
 use super::memory::Memory;
 use crate::contact::State;
 use crate::visco::{Form, Map, Report, Series, MOST_BRANCHES};
 
-/// With this factor squares of all lengths up to 1e300 are finite.
+/// The squares of lengths up to 1e300, multiplied by this factor, are finite.
 const SMALL: f64 = 1e-150;
 
-/// A body: its share of the instantaneous compliance, and its step.
+/// A viscoelastic body in a step.
 pub struct Body {
+    /// The part of A p by which this body is displaced at once.
     share: f64,
+    /// The linear map from w and q_k before the step, and w after it, to the displacement and to q_k after the step.
     map: Map,
 }
 
 impl Body {
-    /// The map of a body over a time step in a form.
+    /// A body in a step of duration `time_step` and of a `form`.
     pub fn new(series: &Series, share: f64, (time_step, form): (f64, Form)) -> Body {
         Body { share, map: Map::new(series, time_step, form) }
     }
 }
 
-/// One step in time.
+/// One step in time of the bodies of a scene.
 pub struct Step {
-    /// The length of the step; 0: an instantaneous load.
+    /// The duration of the step. 0: the load jumps.
     pub time_step: f64,
+    /// The bodies in the form of the step.
     pub bodies: Vec<Body>,
-    /// The bodies in another form, for the error.
+    /// The bodies in the other form, for an estimate of the error.
     pub compared: Vec<Body>,
-    /// Whether there is a step before.
+    /// Whether the step begins at the end of the last step. Otherwise the bodies are at rest before the step.
     pub continues: bool,
 }
 
 impl Step {
-    /// Fields of the history.
+    /// The number of fields in the history.
     pub fn fields(&self) -> usize {
         1 + self.bodies.iter().map(|body| body.map.branches()).sum::<usize>()
     }
 
-    /// H, the displacement of element i by the history, by the maps of `bodies`, from the fields `[A p, q...]`.
+    /// H of element i: the displacement after the step that the `fields` of the history cause, with the maps of `bodies`.
     fn history(bodies: &[Body], fields: &[Vec<f64>], i: usize) -> f64 {
         let (mut sum, mut first, mut q) = (0.0, 1, [0.0; MOST_BRANCHES]);
         for Body { share, map } in bodies {
@@ -57,18 +61,18 @@ impl Step {
         bodies.iter().map(|body| body.share * body.map.compliance()).sum()
     }
 
-    /// The difference of the displacements by both forms, and h - approach: rms over the elements in contact.
+    /// Two rms values over the elements in contact: of the difference between the displacements of both forms, and of h - approach.
     fn error(&self, fields: &[Vec<f64>], state: &State) -> (f64, f64) {
-        let found = self.error_by(1.0, fields, state);
-        // In very long steps, bodies that flow have displacements whose squares overflow.
-        if found.0.is_finite() && found.1.is_finite() {
-            return found;
+        let (difference, distance) = self.error_by(1.0, fields, state);
+        if difference.is_finite() && distance.is_finite() {
+            return (difference, distance);
         }
-        let (off, distance) = self.error_by(SMALL, fields, state);
-        (off / SMALL, distance / SMALL)
+        // In very long steps, bodies that flow have displacements whose squares overflow.
+        let (difference, distance) = self.error_by(SMALL, fields, state);
+        (difference / SMALL, distance / SMALL)
     }
 
-    /// [`Step::error`], times a `factor` that prevents overflow.
+    /// Both values of [`Step::error`], multiplied by a `factor` that prevents overflow.
     fn error_by(&self, factor: f64, fields: &[Vec<f64>], state: &State) -> (f64, f64) {
         let (s, other) = (Step::compliance_of(&self.bodies), Step::compliance_of(&self.compared));
         let (mut differences, mut distances, mut count) = (0.0, 0.0, 0usize);
@@ -76,7 +80,7 @@ impl Step {
             let history = if self.continues { Step::history(&self.bodies, fields, i) } else { 0.0 };
             let compared = if self.continues { Step::history(&self.compared, fields, i) } else { 0.0 };
             differences += (((other - s) * state.u[i] + compared - history) * factor).powi(2);
-            // The distances of the problem solved contain the history, and are s times shorter.
+            // `state.h` is (h + H)/s, and `state.approach` is approach/s (module `memory`).
             distances += ((s * (state.h[i] - state.approach) - history) * factor).powi(2);
             count += 1;
         }
@@ -98,13 +102,13 @@ impl Memory for Step {
     }
 
     fn step_done(&self, history: &mut History, state: &State) -> Report {
-        let (off, distance) = self.error(history.known(), state);
+        let (difference, distance) = self.error(history.known(), state);
         if !self.continues {
             history.forget();
         }
         history.time += self.time_step;
-        history.error += off;
-        let (time, sum) = (history.time, history.error);
+        history.error += difference;
+        let (time, sum_of_errors) = (history.time, history.error);
         let fields = history.known_mut();
         let (mut q, mut after) = ([0.0; MOST_BRANCHES], [0.0; MOST_BRANCHES]);
         for i in 0..state.u.len() {
@@ -119,8 +123,9 @@ impl Memory for Step {
             fields[0][i] = now;
         }
         history.keep();
-        // Without contact there are no distances to compare with.
+        // Without contact there is no h - approach to which an error is relative.
         let relative = |length: f64| if distance > 0.0 { length / distance } else { 0.0 };
-        Report { time, step_error: relative(off), time_error: relative(sum), compliance: self.compliance() }
+        let (step_error, time_error) = (relative(difference), relative(sum_of_errors));
+        Report { time, step_error, time_error, compliance: self.compliance() }
     }
 }

@@ -1,4 +1,4 @@
-//! `contact_normal_adhesion`.
+//! `contact_normal_adhesion`, and the results of adhesion.
 
 use super::arguments::{optional, switch, unknown, GivenEffect, Regions};
 use super::ledger::copy;
@@ -10,25 +10,25 @@ use crate::scene::{Adhesion, Each};
 
 /// `law`: sigma = w/rho exp(-e/rho).
 pub const CONTACT_NORMAL_LAW_EXPONENTIAL: i32 = 0;
-/// `law`: sigma = w/rho up to the range, 0 beyond, the edge smeared over `smear` of the range on both sides.
+/// `law`: sigma = w/rho up to e = (1 - smear) rho, then linear to 0 at e = (1 + smear) rho.
 pub const CONTACT_NORMAL_LAW_DUGDALE: i32 = 1;
-/// `law`: sigma = w/rho (1 - e/(3 rho))^2 up to three ranges.
+/// `law`: sigma = w/rho (1 - e/(3 rho))^2 up to e = 3 rho, then 0.
 pub const CONTACT_NORMAL_LAW_CUBIC: i32 = 2;
 /// `law`: sigma = w/rho (1 + e/(2 rho))^-3.
 pub const CONTACT_NORMAL_LAW_VAN_DER_WAALS: i32 = 3;
 
-/// `start`: on coarser grids with longer ranges, from the contact without attraction.
+/// `start`: the solve begins on coarser grids, on which the range is longer, with the contact without attraction.
 pub const CONTACT_NORMAL_START_AUTO: i32 = 0;
-/// `start`: from a larger approach: elements in contact stay in contact.
+/// `start`: the solve begins at a larger approach and then decreases it, so that elements in contact tend to stay in contact.
 pub const CONTACT_NORMAL_START_FROM_CONTACT: i32 = 1;
-/// `start`: from bodies apart: nothing snaps in before it must.
+/// `start`: the solve begins with separated bodies, so that elements come into contact only if no separated state exists nearby.
 pub const CONTACT_NORMAL_START_FROM_APART: i32 = 2;
 
-/// Effect: attraction across the gap, `p = q - sigma(e)` with contact pressures q >= 0. The scene's force may then be negative. Pressures
-/// are total ones, negative where the bodies pull at each other; `contact` is 1 where e = 0. A work of 0 is no adhesion. Several states may
-/// belong to one approach: `start` chooses one, and initial_guess PREVIOUS follows the one before. To a force belong unstable
-/// states as well, which are refused, and maybe several stable ones, with dF/dapproach > 0; below the pull-off force none is found
-/// (INFEASIBLE). See docs/adhesion.md.
+/// Effect: adhesion. The surfaces attract each other across the gap, `p = q - sigma(e)`, with contact pressures q >= 0. Then the scene's force may be
+/// negative (a pull). Pressures p are total ones, negative where the attraction is the larger part; `contact` is 1 where e = 0. A work of adhesion of
+/// 0 is no adhesion. Several states may belong to one approach: `start` chooses one, and initial_guess PREVIOUS follows the state before. Unstable
+/// states may belong to a force; these are not returned. There may also be several stable states of a force, with dF/dapproach > 0. No state is found
+/// for a pull stronger than the pull-off force (INFEASIBLE). See docs/adhesion.md.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_adhesion {
@@ -36,22 +36,23 @@ pub struct contact_normal_adhesion {
     pub struct_size: i64,
     /// CONTACT_NORMAL_LAW_...; default EXPONENTIAL.
     pub law: i32,
-    /// CONTACT_NORMAL_START_...; default AUTO. Read where the approach is given and initial_guess is NONE.
+    /// CONTACT_NORMAL_START_...; default AUTO. Read only if the approach is prescribed and initial_guess is NONE.
     pub start: i32,
-    /// w of all elements, an energy per area, >= 0; default 0. Not read if there are `works_of_adhesion`.
+    /// The work of adhesion w of all elements, an energy per area, >= 0; default 0. Not read if there are `works_of_adhesion`.
     pub work_of_adhesion: f64,
-    /// That of each element, `[my][mx]`, or NULL (default).
+    /// The work of adhesion of each element, `[my][mx]`, or NULL (default).
     pub works_of_adhesion: *const f64,
-    /// rho, a length; default 0: the shortest that the elements carry. `report->adhesion.range` says which was used.
+    /// The range rho of the attraction, a length; default 0: the shortest range that the elements resolve. `report->adhesion.range` has the range
+    /// used.
     pub range: f64,
-    /// DUGDALE: the part of the range over which its edge is smeared, in [1e-6, 1]; default 0.3.
+    /// DUGDALE: sigma falls to 0 between (1 - smear) rho and (1 + smear) rho, in [1e-6, 1]; default 0.3.
     pub smear: f64,
-    /// 1: dF/dapproach, in `report->adhesion.stiffness`; default 0.
+    /// 1: `report->adhesion.stiffness` gets dF/dapproach; default 0.
     pub stiffness: i32,
-    /// 1: how near the state is to a snap, in `report->adhesion.stability`, for 10 to 100 products; default 0.
+    /// 1: `report->adhesion.stability` gets the stability margin of the state, which takes 10 to 100 products; default 0.
     pub stability: i32,
-    /// tau0, a traction >= 0, default 0: with friction the bound in contact is `mu q + tau0`, q being the contact pressure. Not read without
-    /// friction.
+    /// The shear strength tau0, a traction >= 0; default 0. With friction the traction bound in contact is `mu q + tau0`, where q is the contact
+    /// pressure. Not read without friction.
     pub shear_strength: f64,
 }
 
@@ -93,31 +94,34 @@ impl GivenEffect for contact_normal_adhesion {
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct contact_normal_report_adhesion {
-    /// The sum of contact pressures q dx dy.
+    /// The sum of q dx dy, the contact pressures.
     pub repulsive_force: f64,
-    /// The sum of -sigma dx dy: <= 0. Both together are `normal.force`.
+    /// The sum of -sigma dx dy, <= 0. `repulsive_force` and `adhesive_force` add up to `normal.force`.
     pub adhesive_force: f64,
     /// The sum of 1/2 p u dx dy.
     pub elastic_energy: f64,
-    /// Less the work that the attraction has done: <= 0. The change of both energies by the approach is the force.
+    /// The energy of the attraction, <= 0: minus the work that the attraction has done. The derivative of both energies together by the approach is
+    /// the force.
     pub adhesive_energy: f64,
-    /// `||p + sigma(e)|| / ||p||`, the first outside C, 2-norms, with a fresh product. It is at most the tolerance, as the
-    /// residual is. Where contact pressures and attraction cancel, the scale is 1e-3 `||q||`.
+    /// `||p + sigma(e)|| / ||p||`, 2-norms with a fresh product, the numerator over the elements outside C. If the status is OK it is at most the
+    /// tolerance. If contact pressures and attraction almost cancel, 1e-3 `||q||` replaces the denominator.
     pub law_residual: f64,
-    /// rho as it was used, a length.
+    /// The range rho that was used, a length.
     pub range: f64,
-    /// kappa: the largest stiffness of the attraction, times what an element displaces itself by. Above 1/2 the elements are too coarse for
-    /// the range, and the bits of `accuracy.untrusted` are set; above 1 an element snaps alone.
+    /// kappa: the largest stiffness of the attraction, times an element's influence on itself. Above 1/2 the elements are too coarse for the range,
+    /// and the bits of `accuracy.untrusted` are set. Above 1 a single element is unstable and snaps.
     pub resolution: f64,
-    /// The part of the attraction that acts on the border of the grid: the grid does not contain it where that is more than 0.001.
+    /// The part of the attraction that acts on the border of the grid. Above 0.001 the grid is too small for the attraction.
     pub border_share: f64,
-    /// dF/dapproach if `adhesion->stiffness` is 1 and the status is OK, else 0. Infinite where all elements of two periods are in contact.
+    /// dF/dapproach if `adhesion->stiffness` is 1 and the status is OK, else 0. In a scene with two periods it is infinite if all elements are in
+    /// contact.
     pub stiffness: f64,
-    /// 1 - lambda if `adhesion->stability` is 1 and the status is OK, else 0; lambda is the largest eigenvalue of how a change of the attraction outside the
-    /// contact comes back to itself. Positive in a stable state (of a given approach), near 0 where a small step may snap.
+    /// The stability margin 1 - lambda if `adhesion->stability` is 1 and the status is OK, else 0. A change of the attraction outside the contact
+    /// moves the surfaces there, which changes the attraction again; lambda is the largest eigenvalue of this feedback. The margin is positive in a
+    /// stable state (of a given approach), and near 0 if a small step may cause a snap.
     pub stability: f64,
-    /// 1: the bodies have snapped: the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the elements in contact
-    /// are more, or fewer, by more than a quarter; else 0.
+    /// 1: the bodies have snapped: the branch of the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the number of elements
+    /// in contact has changed by more than a quarter. Else 0.
     pub jumped: i32,
     /// Always 0.
     pub reserved_integer: i32,

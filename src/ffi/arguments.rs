@@ -1,4 +1,4 @@
-//! The caller's arguments: counts, arrays, and the memory that a call reads or writes.
+//! The caller's arguments: checks of numbers and arrays, and the list of the memory that a call reads or writes.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -16,7 +16,7 @@ pub(super) fn count(name: &str, value: i32) -> Result<usize, Refusal> {
     }
 }
 
-/// A count that may be 0.
+/// A count from a C integer that may be 0.
 pub(super) fn not_negative(name: &str, value: i32) -> Result<usize, Refusal> {
     usize::try_from(value).map_err(|_| Refusal::invalid(format!("{name} is {value}; it must not be negative")))
 }
@@ -29,7 +29,7 @@ pub(super) fn reserved(name: &str, value: i32) -> Result<(), Refusal> {
     }
 }
 
-/// Translates a member that is 0 or 1.
+/// A switch from a C integer that must be 0 or 1.
 pub(super) fn switch(name: &str, value: i32) -> Result<bool, Refusal> {
     match value {
         0 => Ok(false),
@@ -38,25 +38,25 @@ pub(super) fn switch(name: &str, value: i32) -> Result<bool, Refusal> {
     }
 }
 
-/// Refuses a value of an enumeration that is none of the known ones.
+/// Refuses the value of an enumeration, which must be `known`.
 pub(super) fn unknown<T>(name: &str, value: i32, known: &str) -> Result<T, Refusal> {
     Err(Refusal::invalid(format!("{name} is {value}; it must be {known}")))
 }
 
-/// The caller's array of n values, or none.
+/// The caller's array of n values. None: NULL.
 pub(super) unsafe fn optional<'a, T>(values: *const T, n: usize) -> Option<&'a [T]> {
     // SAFETY: not null: the caller promises n values, by the conventions of the ABI.
     (!values.is_null()).then(|| unsafe { std::slice::from_raw_parts(values, n) })
 }
 
-/// The caller's array of n values.
+/// The caller's array of n values. Refuses NULL, and an array that is not aligned.
 pub(super) unsafe fn required<'a, T>(name: &str, values: *const T, n: usize) -> Result<&'a [T], Refusal> {
     aligned(name, values, n)?;
     // SAFETY: by the caller.
     unsafe { optional(values, n) }.ok_or_else(|| Refusal::null(name))
 }
 
-/// Copies values into part k of the caller's array, whose parts have the length of `values`. NULL: not wanted.
+/// Copies `values` to the caller's array, as part k of equal parts. NULL: not wanted.
 pub(super) unsafe fn copy_to<A>(values: &[A], to: *mut f64, k: usize) {
     if !to.is_null() {
         // SAFETY: not null: room for the parts, by the conventions of the ABI, and nothing overlaps (`Regions`).
@@ -64,14 +64,14 @@ pub(super) unsafe fn copy_to<A>(values: &[A], to: *mut f64, k: usize) {
     }
 }
 
-/// The contents of an array.
+/// The type of the values of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Element {
     Double,
     Int32,
 }
 
-/// The element types of arrays that are read.
+/// A Rust type whose values arrays that are read have.
 pub(super) trait Plain {
     const ELEMENT: Element;
 }
@@ -88,17 +88,22 @@ impl Plain for i32 {
     const ELEMENT: Element = Element::Int32;
 }
 
-/// A part of the caller's memory.
+/// A struct or an array in the caller's memory.
 #[derive(Clone, Copy)]
 pub(super) struct Region {
+    /// The address.
     start: usize,
+    /// The address of the first byte after the region.
     end: usize,
+    /// The name of the argument or member that points to the region, for messages.
     pub name: &'static str,
-    /// The problem of a batch, counted from 0.
+    /// In a batch: the problem to which the region belongs, counted from 0.
     problem: Option<usize>,
+    /// Whether the call writes the region.
     is_output: bool,
     /// Whether the call reads the array. False for structs, and for outputs that are only written.
     pub is_read: bool,
+    /// The type of the values, if the call reads the array.
     pub element: Element,
 }
 
@@ -109,11 +114,12 @@ impl Region {
 }
 
 thread_local! {
-    /// Where calls on this thread may read and write; none: everywhere.
+    /// The addresses that calls on this thread may read and write. None: all.
     static ALLOWED: RefCell<Option<Vec<Range<usize>>>> = const { RefCell::new(None) };
 }
 
-/// Runs `call`. In it, calls of the library are refused before they read or write beyond these ranges. This is for calls replayed from a file.
+/// Calls `call`. Meanwhile calls of the library on this thread are refused if they would read or write beyond these ranges of addresses. This is for
+/// calls of a dump, whose file is not trusted.
 pub(super) fn within<R>(ranges: Vec<Range<usize>>, call: impl FnOnce() -> R) -> R {
     let outer = ALLOWED.replace(Some(ranges));
     let result = call();
@@ -121,15 +127,16 @@ pub(super) fn within<R>(ranges: Vec<Range<usize>>, call: impl FnOnce() -> R) -> 
     result
 }
 
-/// All memory that one call reads and writes. An output may overlap with nothing else.
+/// The list of all memory that one call reads and writes. An output may not overlap with any other region.
 #[derive(Default)]
 pub(super) struct Regions {
     list: Vec<Region>,
+    /// In a batch: the problem to which the next regions belong.
     problem: Option<usize>,
 }
 
 impl Regions {
-    /// Removes all regions, and keeps the memory of the list.
+    /// Removes all regions. The list keeps its memory.
     pub fn clear(&mut self) {
         self.list.clear();
         self.problem = None;
@@ -140,14 +147,14 @@ impl Regions {
         self.problem = Some(problem);
     }
 
-    /// Removes the regions of the last problem. The problem is refused, so that its memory is neither read nor written.
+    /// Removes the regions of the problem that was entered last. This problem is refused, so that its memory is neither read nor written.
     pub fn leave_out_problem(&mut self) {
         while self.list.last().is_some_and(|region| region.problem.is_some() && region.problem == self.problem) {
             self.list.pop();
         }
     }
 
-    /// `count` values that are only read; none at NULL.
+    /// Adds an array of `count` values that the call only reads. NULL adds nothing.
     pub fn input<T: Plain>(&mut self, name: &'static str, start: *const T, count: usize) -> Result<(), Refusal> {
         aligned(name, start, count)?;
         self.add(name, start as usize, count.saturating_mul(size_of::<T>()), false)?;
@@ -155,35 +162,35 @@ impl Regions {
         Ok(())
     }
 
-    /// Marks the output that begins here as read.
+    /// Marks the output that begins at `start` as one that the call also reads.
     pub fn read_too<T: Plain>(&mut self, start: *const T) {
         for region in self.list.iter_mut().filter(|region| region.start == start as usize) {
             (region.is_read, region.element) = (true, T::ELEMENT);
         }
     }
 
-    /// The longest of the arguments that begin here.
-    pub fn at(&self, start: usize) -> Option<&Region> {
+    /// The longest of the regions that begin at this address.
+    pub fn beginning_at(&self, start: usize) -> Option<&Region> {
         self.list.iter().filter(|region| region.start == start).max_by_key(|region| region.end)
     }
 
-    /// A struct that was read from `at`.
-    pub fn input_struct<T: Versioned>(&mut self, at: *const T, read: &T) -> Result<(), Refusal> {
-        self.add(T::short_name(), at as usize, size_of_callers(read), false)
+    /// Adds a struct at `address` that the call reads; `read` is the copy of it.
+    pub fn input_struct<T: Versioned>(&mut self, address: *const T, read: &T) -> Result<(), Refusal> {
+        self.add(T::short_name(), address as usize, size_of_callers(read), false)
     }
 
-    /// A struct that was read from `at` and is written.
-    pub fn output_struct<T: Versioned>(&mut self, at: *const T, read: &T) -> Result<(), Refusal> {
-        self.add(T::short_name(), at as usize, size_of_callers(read), true)
+    /// Adds a struct at `address` that the call reads and writes; `read` is the copy of it.
+    pub fn output_struct<T: Versioned>(&mut self, address: *const T, read: &T) -> Result<(), Refusal> {
+        self.add(T::short_name(), address as usize, size_of_callers(read), true)
     }
 
-    /// `count` values that are written.
+    /// Adds an array of `count` values that the call writes. NULL adds nothing.
     pub fn output<T>(&mut self, name: &'static str, start: *const T, count: usize) -> Result<(), Refusal> {
         aligned(name, start, count)?;
         self.add(name, start as usize, count.saturating_mul(size_of::<T>()), true)
     }
 
-    /// `count` structs that are written.
+    /// Adds an array of `count` structs that the call writes.
     pub fn output_rows<T: Versioned>(
         &mut self,
         name: &'static str,
@@ -209,12 +216,13 @@ impl Regions {
         Ok(())
     }
 
-    /// Refuses regions beyond the memory that calls may use.
+    /// Refuses regions beyond the addresses that calls on this thread may use.
     fn check_ranges(&self) -> Result<(), Refusal> {
         let checked = ALLOWED.try_with(|ranges| {
             let ranges = ranges.borrow();
             let Some(ranges) = &*ranges else { return Ok(()) };
-            let is_inside = |region: &Region| ranges.iter().any(|r| r.start <= region.start && region.end <= r.end);
+            let is_inside =
+                |region: &Region| ranges.iter().any(|range| range.start <= region.start && region.end <= range.end);
             match self.list.iter().find(|region| !is_inside(region)) {
                 Some(region) => {
                     let (name, bytes) = (region.name, region.bytes());
@@ -223,7 +231,7 @@ impl Regions {
                 None => Ok(()),
             }
         });
-        // A thread that ends has lost its thread-local memory: it replays no file.
+        // A thread that ends has lost its thread-local memory. It makes no calls of a dump.
         checked.unwrap_or(Ok(()))
     }
 
@@ -231,7 +239,7 @@ impl Regions {
     pub fn check(&mut self) -> Result<(), Refusal> {
         self.check_ranges()?;
         self.list.sort_unstable_by_key(|region| (region.start, region.end));
-        // The input and the output that end last among the regions so far.
+        // Of the regions so far, in the order of their addresses: the input and the output that end last.
         let (mut input, mut output): (Option<&Region>, Option<&Region>) = (None, None);
         for region in &self.list {
             let before = if region.is_output { [output, input] } else { [output, None] };
@@ -247,7 +255,7 @@ impl Regions {
     }
 }
 
-/// Refuses arrays whose start is not aligned for their elements, as in packed structs or in records of a file in memory.
+/// Refuses an array whose address is not aligned for its values, as it may be in packed structs or in records of a file in memory.
 pub(super) fn aligned<T>(name: &str, start: *const T, count: usize) -> Result<(), Refusal> {
     if count == 0 || start.is_aligned() {
         return Ok(());
@@ -264,22 +272,22 @@ fn overlap(one: &Region, other: &Region) -> Refusal {
     Refusal::invalid(format!("{} and {} overlap; each output needs memory of its own", said(one), said(other)))
 }
 
-/// An effect, as the caller's header has it.
+/// The struct of an effect.
 pub(super) trait GivenEffect: Versioned {
-    /// Adds the arrays that are read. By default there are none.
+    /// Adds the arrays of the effect that the call reads. By default there are none.
     fn add_to(&self, _regions: &mut Regions, _grid: &Grid) -> Result<(), Refusal> {
         Ok(())
     }
 }
 
-/// Adds an effect that was read from `at`, if there is one, and its arrays.
+/// Adds the struct of an effect, if there is one, and its arrays. `read` is the copy of the struct at `address`.
 pub(super) fn add<T: GivenEffect>(
     regions: &mut Regions,
     grid: &Grid,
-    at: *const T,
+    address: *const T,
     read: &Option<T>,
 ) -> Result<(), Refusal> {
     let Some(effect) = read else { return Ok(()) };
-    regions.input_struct(at, effect)?;
+    regions.input_struct(address, effect)?;
     effect.add_to(regions, grid)
 }

@@ -1,4 +1,4 @@
-//! `contact_normal_solver_solve_batch`: many problems in one call, spread over threads.
+//! `contact_normal_solver_solve_batch`: many problems in one call, each of which one thread solves.
 
 use std::ptr::null_mut;
 use std::sync::{Mutex, PoisonError};
@@ -23,20 +23,20 @@ use super::watcher::Watcher;
 use crate::memory::collected;
 use crate::solver::Solver;
 
-/// Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
-/// solver was set up with threads (0: all cores), each on one thread. `scenes`, `fields` and `reports` are arrays of `count`
-/// structs, each filled by its `_init`; `statuses` is an array of `count` values. `fields`, `reports` and `statuses` may be NULL:
-/// not wanted. A problem is refused if it reads or writes memory that another one writes.
+/// Solves `count` problems for the grid and the bodies of the solver, with the same options. The solver's threads (0: all cores) solve different
+/// problems at a time, one problem per thread. `scenes`, `fields` and `reports` are arrays of `count` structs, each filled by its `_init`;
+/// `statuses` is an array of `count` values. `fields`, `reports` and `statuses` may be NULL: not wanted. The call is refused if one problem
+/// reads or writes memory that another one writes.
 ///
-/// A problem that is refused does not keep the others from being solved: its outputs stay as they are and `statuses` holds its
-/// status. The call returns OK if all problems have that status, or else the status of the first one that was refused (< 0), or
-/// else of the first one that stopped early (> 0). `contact_normal_last_error` then has a line "problem 3: ..." for each of them,
-/// counted from 0 and in this order: 1000 lines at most. Where the arguments of the call itself are refused, `statuses` stays as it is too.
+/// If a problem is refused, the others are still solved. The outputs of the refused problem are not written, and `statuses` has its status. The
+/// call returns OK if all problems have this status. Otherwise it returns the status of the first refused problem (< 0) or, if there is none, of the
+/// first problem that stopped early (> 0). `contact_normal_last_error` then has a line "problem 3: ..." for each problem that is not OK: first the
+/// refused ones, then the others, counted from 0, and at most 1000 lines. If the arguments of the call itself are refused, `statuses` is not written.
 ///
 /// Results have the same bits as those of `contact_normal_solver_solve` for one problem after the other with one thread.
-/// `initial_guess` may be NONE or GIVEN, not PREVIOUS, and a problem whose friction `continues` is refused. The last result of the solver itself stays, for later solves.
-/// `progress` must be NULL (UNSUPPORTED): no callback is called from another thread; for the same reason there are no log
-/// messages. The first batch sets up one solver per thread, which are kept. Since 0.1.
+/// `initial_guess` may be NONE or GIVEN, not PREVIOUS, and a problem whose friction `continues` is refused. The last result of the solver itself is
+/// kept for later solves. `progress` must be NULL (else UNSUPPORTED), because no callback is called from another thread. For the same reason there
+/// are no log messages. The first batch sets up one solver per thread, which the handle keeps. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_solve_batch(
     solver: *mut contact_normal_solver,
@@ -48,7 +48,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
     statuses: *mut contact_normal_status,
 ) -> contact_normal_status {
     guard(|| {
-        // SAFETY: NULL or a handle of ours.
+        // SAFETY: NULL or a handle of this library.
         let mut in_use = unsafe { InUse::begin(solver)? };
         let Held { solver, buffers } = in_use.held();
         let count = not_negative("count", count)?;
@@ -86,15 +86,18 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
 /// The caller's arrays.
 struct Batch {
     scenes: Rows<contact_normal_scene>,
+    /// The outputs of each problem, or why the problem is refused.
     outputs: Vec<Result<Outputs, Refusal>>,
+    /// `count` values, or NULL.
     statuses: *mut contact_normal_status,
 }
 
-// SAFETY: the pointers are the caller's, who leaves what they point to alone during the call. Scenes are read only, and what is
-// written for one problem no other reads or writes: by the conventions of the call, and `add_to`.
+// SAFETY: the caller does not touch the memory of the pointers during the call. Scenes are only read. No problem reads or writes memory that another
+// one writes: `add_to` lists all memory, and overlaps are refused.
 unsafe impl Sync for Batch {}
 
 impl Batch {
+    /// Reads the structs of the outputs of all problems.
     unsafe fn new(
         count: usize,
         scenes: *const contact_normal_scene,
@@ -117,7 +120,7 @@ impl Batch {
         }
     }
 
-    /// Adds all memory that is read and written, because several threads work at a time. A refused problem reads and writes nothing.
+    /// Adds the memory that all problems read and write, because several threads work at a time. A refused problem reads and writes nothing.
     fn add_to(&mut self, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
         regions.output("statuses", self.statuses, self.outputs.len())?;
         for i in 0..self.outputs.len() {
@@ -134,12 +137,13 @@ impl Batch {
         Ok(())
     }
 
-    /// Adds what problem `i` reads and writes.
+    /// Adds the memory that problem `i` reads and writes.
     fn add_problem(&self, i: usize, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
         self.outputs[i].as_ref().map_err(Refusal::clone)?.add_to(regions, n)?;
         // SAFETY: a scene that declares its size, by the conventions of the ABI.
-        let (named, at) = unsafe { self.scenes.at(i, "scene").and_then(|at| Ok((Named::read(at)?, at)))? };
-        named.add_to(regions, at)
+        let scene = unsafe { self.scenes.at(i, "scene")? };
+        // SAFETY: as above.
+        unsafe { Named::read(scene)? }.add_to(regions, scene)
     }
 
     /// Solves problem `i` and writes its outputs and its status. No two threads may do so for the same `i`.
@@ -158,7 +162,7 @@ impl Batch {
         let mut recording = unsafe { Recording::new("contact_normal_solver_solve", given_options, arguments) };
         if recording.is_wanted() {
             let mut regions = Regions::default();
-            // The solve itself reports errors of the arguments.
+            // If the arguments have errors, the solve below reports them.
             let _ = options.add_to(&mut regions, given_options).and_then(|()| self.add_problem(i, &mut regions, n));
             if let Ok(outputs) = &self.outputs[i] {
                 outputs.add_read(&mut regions, &options.options);
@@ -183,34 +187,36 @@ impl Batch {
     }
 }
 
-/// The most problems with a line in the message of a batch.
+/// The largest number of problems that have a line in the message of a batch.
 const LINES: usize = 1000;
 
-/// The problems that are not OK: those that were refused before those that stopped early, then by number.
+/// The problems of a batch that are not OK.
 #[derive(Default)]
 pub(super) struct NotOk {
-    first: Vec<(usize, Conclusion)>,
-    /// The warnings of all problems.
+    /// The number and the conclusion of each such problem: first the refused ones, then those that stopped early, each group in the order of numbers.
+    problems: Vec<(usize, Conclusion)>,
+    /// The bits of the warnings about all problems.
     warnings: i32,
 }
 
 impl NotOk {
+    /// Adds the conclusion of a problem.
     pub fn note(&mut self, problem: usize, outcome: Conclusion) {
         let rank = |(problem, outcome): &(usize, Conclusion)| (outcome.status > CONTACT_NORMAL_OK, *problem);
         self.warnings |= outcome.warnings;
         if outcome.status != CONTACT_NORMAL_OK {
             let noted = (problem, outcome);
-            self.first.insert(self.first.partition_point(|other| rank(other) < rank(&noted)), noted);
-            self.first.truncate(LINES);
+            self.problems.insert(self.problems.partition_point(|other| rank(other) < rank(&noted)), noted);
+            self.problems.truncate(LINES);
         }
     }
 
-    /// The conclusion of the call. Its status is that of the first problem. Its message has a line for each problem ("problem 3: ..."), where `each`
-    /// is the word for a problem. If all are OK, it has the warnings.
+    /// The conclusion of the call. The status is that of the first problem in `problems`. The message has a line for each of these problems
+    /// ("problem 3: ..."), which begins with the word `each`. If all problems are OK, the conclusion has the warnings.
     pub fn outcome(self, each: &str) -> Conclusion {
-        let status = self.first.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
+        let status = self.problems.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
         let line = |(i, outcome): &(usize, Conclusion)| format!("{each} {i}: {}", outcome.message);
-        let lines: Vec<String> = self.first.iter().map(line).collect();
+        let lines: Vec<String> = self.problems.iter().map(line).collect();
         let warnings = if status == CONTACT_NORMAL_OK { self.warnings } else { 0 };
         Conclusion { status, message: lines.join("\n"), warnings, ..Conclusion::default() }
     }

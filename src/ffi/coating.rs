@@ -1,4 +1,4 @@
-//! Effect: coatings, `contact_normal_coating`.
+//! `contact_normal_coating`, and the compliance of a coated body.
 
 use super::arguments::GivenEffect;
 use super::guard::guard;
@@ -9,25 +9,25 @@ use crate::grid::Grid;
 use crate::scene::{Bodies, Coating, CoatingLayer, Load, Plain};
 
 /// Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below,
-/// which may be rigid: +infinity.
+/// which may be rigid (`shear_modulus` +infinity).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_coating {
     /// Set by `contact_normal_coating_init`.
     pub struct_size: i64,
-    /// Its thickness, a length >= 0; default 0: no coating.
+    /// The thickness of the coating, a length >= 0; default 0: no coating.
     pub thickness: f64,
-    /// Its G, a pressure > 0, at most 1e4 times that of the body; default 0: to be set.
+    /// The shear modulus G of the coating, a pressure > 0, at most 1e4 times that of the body; default 0: to be set.
     pub shear_modulus: f64,
-    /// Its nu, in (-1, 0.5]; default 0.
+    /// The Poisson ratio nu of the coating, in (-1, 0.5]; default 0.
     pub poisson_ratio: f64,
 }
 
 versioned! { contact_normal_coating, contact_normal_coating_init, 32 }
 
-/// Writes the `compliance` of a coated body under a pressure wave: the amplitude of the displacement over that of the
+/// Computes the `compliance` of a coated body under a pressure wave: the amplitude of the displacement divided by the amplitude of the
 /// pressure. `shear_modulus` (+infinity: rigid) and `poisson_ratio` are those of the body below the coating.
-/// `wave_number` is 2 pi over the wavelength, > 0. Compare it with a formula of your own; a body of one material has
+/// `wave_number` is k = 2 pi over the wavelength, > 0. The function is for comparisons with other formulas; without a coating the compliance is
 /// `(1 - nu)/(G k)`. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_coating_compliance(

@@ -1,4 +1,4 @@
-//! The effects that a scene may name beside coefficients of its own (`influence`): one struct each, NULL in the scene: not simulated.
+//! The structs of the effects period, layer, pressure limit and patches.
 
 use super::arguments::{count, optional, required, reserved, switch, GivenEffect, Regions};
 use super::status::Refusal;
@@ -7,65 +7,67 @@ use crate::effects::MOST_PATCHES;
 use crate::grid::Grid;
 use crate::scene::{Each, Layer, Patches, Period, PressureLimit};
 
-/// Effect: the scene repeats itself after `mx dx` in x, after `my dy` in y, or after both: the grid is one period. With both, mean
-/// displacements are zero and the approach is relative to the mean planes of the bodies (docs/effects.md).
+/// Effect: the scene is periodic in x with the period `mx dx`, in y with the period `my dy`, or in both directions: the grid is one period. With two
+/// periods the mean displacement is zero, and the approach is relative to the mean planes of the bodies (docs/effects.md).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_period {
     /// Set by `contact_normal_period_init`.
     pub struct_size: i64,
-    /// 1: it repeats itself in x; 0 (default): it does not.
+    /// 1: the scene is periodic in x; 0 (default): it is not.
     pub x: i32,
-    /// The same in y.
+    /// 1: the scene is periodic in y; 0 (default): it is not.
     pub y: i32,
 }
 
 versioned! { contact_normal_period, contact_normal_period_init, 16 }
 
-/// Effect: a thin compliant layer, `e = h - approach + A p + c p`. Displacements contain the compression of the layer.
+/// Effect: a thin compliant layer between the bodies, `e = h - approach + A p + c p`. Displacements contain the compression of the layer.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_layer {
     /// Set by `contact_normal_layer_init`.
     pub struct_size: i64,
-    /// c of all elements, a length per pressure, >= 0; default 0. Not read if there are `compliances`.
+    /// The compliance c of all elements, a length per pressure, >= 0; default 0. Not read if there are `compliances`.
     pub compliance: f64,
-    /// c of each element, `[my][mx]`, or NULL (default).
+    /// The compliance c of each element, `[my][mx]`, or NULL (default).
     pub compliances: *const f64,
 }
 
 versioned! { contact_normal_layer, contact_normal_layer_init, 24 }
 
 /// Effect: pressures do not exceed a limit, the hardness of the softer surface. Elements at the limit have `contact` 2 and a
-/// `deformed_distance` <= 0: the plastic penetration, with its sign turned. The limit has no
-/// memory: unloading goes back the way that loading came.
+/// `deformed_distance` <= 0, which is minus the depth of the plastic indentation. The indentation has no memory: unloading follows the same path as
+/// loading.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_pressure_limit {
     /// Set by `contact_normal_pressure_limit_init`.
     pub struct_size: i64,
-    /// The limit of all elements, a pressure > 0; +infinity (default): none. Not read if there are `limits`.
+    /// The limit of all elements, a pressure > 0; +infinity (default): no limit. Not read if there are `limits`.
     pub limit: f64,
-    /// That of each element, `[my][mx]`, or NULL (default).
+    /// The limit of each element, `[my][mx]`, or NULL (default).
     pub limits: *const f64,
 }
 
 versioned! { contact_normal_pressure_limit, contact_normal_pressure_limit_init, 24, limit: f64::INFINITY }
 
-/// Effect: several contact patches on one grid, whose interaction is scaled: for patches on planes of their own.
+/// Effect: several contact patches on one grid, with a factor on the influence of each patch on each other one: for patches that lie in different
+/// planes.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_patches {
     /// Set by `contact_normal_patches_init`.
     pub struct_size: i64,
-    /// Number of patches, 1 to 64; default 0: to be set. Each costs a product.
+    /// The number of patches, 1 to 64; default 0: to be set. Each patch adds the cost of a product.
     pub count: i32,
     /// Always 0.
     pub reserved: i32,
-    /// The patch of each element, `[my][mx]`: 0 to count - 1, or -1: none, nothing touches there, and displacements are those of patch 0. Default NULL: to be set.
+    /// The patch of each element, `[my][mx]`: 0 to count - 1. -1: the element belongs to no patch and stays exterior; its displacement is that of an
+    /// element of patch 0. Default NULL: to be set.
     pub patch: *const i32,
-    /// `[count][count]`, symmetric: 1 on the diagonal, elsewhere in [0, 1]. 0: independent, 1: as if there were no patches.
-    /// Default NULL: to be set.
+    /// The factor between each pair of patches, `[count][count]`, symmetric: 1 on the diagonal, elsewhere in [0, 1]. 0: the two patches do not
+    /// influence each other; 1: their influence is unchanged. Default NULL: to be set.
     pub factors: *const f64,
 }
 

@@ -1,4 +1,4 @@
-//! `contact_normal_effects_bill`: which effects a scene calls for, and what they cost.
+//! `contact_normal_effects_bill`: which effects of a scene change a result by more than a target, and what they cost.
 
 use super::arguments::{self, not_negative, required, switch, Regions};
 use super::conclusion::Conclusion;
@@ -11,50 +11,50 @@ use super::structs::{versioned, Rows};
 use super::watcher::{why, Watcher};
 use crate::solver::{effects_bill, BillOptions, BillRow, Omission, Verdict};
 
-/// `omitted`: nothing.
+/// `omitted`: nothing is left out.
 pub const CONTACT_NORMAL_OMIT_NONE: i32 = 0;
-/// `omitted`: the coatings; the bodies are all of the material below.
+/// `omitted`: the coatings. The bodies consist of the material below.
 pub const CONTACT_NORMAL_OMIT_COATING: i32 = 1;
-/// `omitted`: the period; the scene stands alone.
+/// `omitted`: the period. The scene is not repeated.
 pub const CONTACT_NORMAL_OMIT_PERIOD: i32 = 2;
-/// `omitted`: the patches; all feel each other.
+/// `omitted`: the patches. All elements influence each other in full.
 pub const CONTACT_NORMAL_OMIT_PATCHES: i32 = 3;
 /// `omitted`: the thin compliant layer.
 pub const CONTACT_NORMAL_OMIT_LAYER: i32 = 4;
-/// `omitted`: the limit of pressures.
+/// `omitted`: the pressure limit.
 pub const CONTACT_NORMAL_OMIT_PRESSURE_LIMIT: i32 = 5;
-/// `omitted`: friction, with what tractions of unlike bodies do to pressures.
+/// `omitted`: friction, and for unlike bodies the influence of the tractions on the pressures.
 pub const CONTACT_NORMAL_OMIT_FRICTION: i32 = 6;
-/// `omitted`: that bodies are unlike; in their place there are like bodies of the same compliances, so that pressures and tractions do not
-/// feel each other.
+/// `omitted`: the coupling of unlike bodies. Like bodies of the same compliances replace them, so that pressures and tractions do not
+/// influence each other.
 pub const CONTACT_NORMAL_OMIT_COUPLING: i32 = 7;
 /// `omitted`: the spin.
 pub const CONTACT_NORMAL_OMIT_SPIN: i32 = 8;
-/// `omitted`: the tangential compliance of a third body.
+/// `omitted`: the tangential compliance of the layer between the bodies (`friction->compliance`).
 pub const CONTACT_NORMAL_OMIT_FRICTION_COMPLIANCE: i32 = 9;
-/// `omitted`: the coatings; a thin layer stands for them, which is their limit for waves much longer than their thickness. Only of coatings
-/// that are softer than the body below.
+/// `omitted`: the coatings. A thin layer replaces them, which is their limit for pressure waves much longer than their thickness. This is for
+/// coatings that are softer than the body below.
 pub const CONTACT_NORMAL_OMIT_COATING_AS_LAYER: i32 = 10;
-/// `omitted`: adhesion; nothing attracts.
+/// `omitted`: adhesion. There is no attraction.
 pub const CONTACT_NORMAL_OMIT_ADHESION: i32 = 11;
-/// `omitted`: the law of friction; the coefficient is that at rest everywhere.
+/// `omitted`: the law of friction. The coefficient is the one at rest everywhere.
 pub const CONTACT_NORMAL_OMIT_FRICTION_LAW: i32 = 12;
-/// `omitted`: the yield of a third body, not its compliance.
+/// `omitted`: the yielding of the layer between the bodies (`friction->yield_limit`), but not its compliance.
 pub const CONTACT_NORMAL_OMIT_FRICTION_LAYER: i32 = 13;
-/// `omitted`: that bodies relax; they give way as at once.
+/// `omitted`: the relaxation of the bodies. They have their instantaneous moduli.
 pub const CONTACT_NORMAL_OMIT_VISCO: i32 = 14;
 
-/// `verdict`: the change is too near to the target, or its error is not known; more time decides.
+/// `verdict`: the change is too near to the target, or its error is not known. With more time the call may decide.
 pub const CONTACT_NORMAL_VERDICT_NOT_DECIDED: i32 = 0;
-/// `verdict`: the quantity changes by less than the target, the error of the change included.
+/// `verdict`: the quantity changes by less than the target, with the error of the change.
 pub const CONTACT_NORMAL_VERDICT_NEGLIGIBLE: i32 = 1;
-/// `verdict`: it changes by more than the target.
+/// `verdict`: the quantity changes by more than the target.
 pub const CONTACT_NORMAL_VERDICT_NEEDED: i32 = 2;
 const _: () = assert!(Verdict::NotDecided as i32 == CONTACT_NORMAL_VERDICT_NOT_DECIDED);
 const _: () = assert!(Verdict::Negligible as i32 == CONTACT_NORMAL_VERDICT_NEGLIGIBLE);
 const _: () = assert!(Verdict::Needed as i32 == CONTACT_NORMAL_VERDICT_NEEDED);
 
-/// The change of a quantity without an effect, or without two, and the cost that this saves.
+/// The change of a quantity if one or two effects are left out, and the cost with and without them.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_effects_row {
@@ -62,7 +62,7 @@ pub struct contact_normal_effects_row {
     pub struct_size: i64,
     /// CONTACT_NORMAL_OMIT_...: the effect that is left out.
     pub omitted: i32,
-    /// The second effect that is left out; NONE: only one is.
+    /// CONTACT_NORMAL_OMIT_...: the second effect that is left out; NONE: there is no second one.
     pub also_omitted: i32,
     /// CONTACT_NORMAL_QUANTITY_...
     pub quantity: i32,
@@ -70,21 +70,22 @@ pub struct contact_normal_effects_row {
     pub verdict: i32,
     /// CONTACT_NORMAL_LACK_...: why a value, a change or its error is not known.
     pub lack: i32,
-    /// 0.
+    /// Always 0.
     pub reserved: i32,
-    /// The value of the scene as it is, on the last of the small grids; NaN: there is none.
+    /// The quantity for the whole scene, on the last of the small grids; NaN: there is no value.
     pub value: f64,
-    /// The change of the quantity by leaving out, on the last of the small grids; NaN: not known, as where that grid is not solved.
+    /// The change of the quantity without the effects that are left out, on the last of the small grids; NaN: not known, for instance because that
+    /// grid was not solved.
     pub change: f64,
-    /// How far the change may be off; < 0: not known.
+    /// The estimated error of the change; < 0: not known.
     pub change_error: f64,
-    /// Predicted seconds of a whole call for the scene on its own grid, with one thread.
+    /// The predicted seconds of a whole call for the scene on its own grid, with one thread.
     pub seconds: f64,
-    /// The same without the effects that are left out.
+    /// The predicted seconds without the effects that are left out.
     pub seconds_without: f64,
-    /// Predicted bytes of its solver.
+    /// The predicted bytes of the solver for the scene on its own grid.
     pub bytes: f64,
-    /// The same without the effects that are left out.
+    /// The predicted bytes without the effects that are left out.
     pub bytes_without: f64,
 }
 
@@ -111,16 +112,20 @@ impl From<&BillRow> for contact_normal_effects_row {
     }
 }
 
-/// Computes the bill of the effects that the scene names, and of the refinements that it has without naming them (the coupling of unlike
-/// bodies, the spin, a coating instead of a thin layer). For each of them, and each of the `n` `quantities` (CONTACT_NORMAL_QUANTITY_...),
-/// a row has the change of the quantity without the effect, the error of this change, and the cost on the scene's own grid. The verdict is by
-/// the relative accuracy `target`, between 0 and 1. `pairs` 1: pairs are left out, too; 0: they are not. The scene is solved on small grids,
-/// for at most 5 % of its own predicted seconds or 100 ms, or `options->max_seconds` where that is given.
+/// Computes the bill: how much a result changes if an effect of the scene is left out, and what the effect costs. Besides the effects of the scene
+/// the bill has refinements that a scene has without a struct of their own: the coupling of unlike bodies, the spin, a coating in place of a thin
+/// layer.
 ///
-/// `*count` is the number of rows: n for each effect, in the order of the constants, then n for each pair. `rows` has room for the first
-/// `capacity` of them; rows NULL asks for the count alone, which takes no time. ITERATION_LIMIT: `max_cycles` ended a solve of the last grid, and
-/// rows that need it have no change (LACK_UNSOLVED); or `max_seconds` was reached. Then, and after CANCELLED, rows have the results of the last
-/// grid that was solved with and without all effects. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
+/// For each of these, and each of the `n` `quantities` (CONTACT_NORMAL_QUANTITY_...), a row has the change of the quantity, the error of this change,
+/// and the cost on the scene's own grid. The verdict compares the change with the relative accuracy `target`, between 0 and 1. `pairs` 1: pairs of
+/// effects are left out as well; 0: they are not. The scene is solved on small grids, for at most 5 % of its own predicted seconds or 100 ms, or for
+/// `options->max_seconds` if that is given.
+///
+/// `*count` is the number of rows: n for each effect, in the order of the constants, then n for each pair. `rows` has room for the first `capacity`
+/// rows. With `rows` NULL the call only writes the count, which takes no time. ITERATION_LIMIT: `max_cycles` ended a solve of the last grid, and rows
+/// that need this solve have no change (LACK_UNSOLVED); or `max_seconds` was reached. After `max_seconds` and CANCELLED rows have the results of the
+/// last grid that was solved with and without all effects. UNSUPPORTED: influence coefficients of your own, tractions kept by a handle, FIXED
+/// contact. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_effects_bill(
     scene: *const contact_normal_scene,
@@ -155,10 +160,10 @@ pub unsafe extern "C" fn contact_normal_effects_bill(
         // SAFETY: as above.
         let scene = unsafe { named.translate()? };
         let asked = BillOptions { target, max_seconds: translated.given.max_seconds, pairs };
-        let write_count = |found: usize| {
+        let write_count = |rows: usize| {
             if !count.is_null() {
-                // SAFETY: not NULL: an integer of the caller's.
-                unsafe { count.write(found as i32) };
+                // SAFETY: not NULL, so an integer of the caller.
+                unsafe { count.write(rows as i32) };
             }
         };
         let Some(to) = to else {
@@ -167,10 +172,10 @@ pub unsafe extern "C" fn contact_normal_effects_bill(
         };
         let watcher = Watcher::of(&translated);
         let told = &mut watcher.told();
-        let (stop, found) = effects_bill(&scene, &translated.options, &asked, &wanted, watcher.callback(told))?;
+        let (outcome, bill) = effects_bill(&scene, &translated.options, &asked, &wanted, watcher.callback(told))?;
         // SAFETY: the caller's array holds `capacity` rows.
-        found.iter().take(capacity).enumerate().for_each(|(i, row)| unsafe { to.write(i, &row.into()) });
-        write_count(found.len());
-        watcher.conclusion(Conclusion::of(stop, || why(stop).into())).conclude()
+        bill.iter().take(capacity).enumerate().for_each(|(i, row)| unsafe { to.write(i, &row.into()) });
+        write_count(bill.len());
+        watcher.conclusion(Conclusion::of(outcome, || why(outcome).into())).conclude()
     })
 }

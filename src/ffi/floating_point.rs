@@ -1,14 +1,15 @@
-//! The floating-point environment of the host. Fortran hosts flush denormals to zero, or trap. The library computes in the default environment and
-//! restores the host's. Callbacks run in the host's environment, and changes that they make to it remain.
+//! The floating-point environment of the host, the calling program. Fortran programs may flush denormals to zero, or trap exceptions. The library
+//! computes in the default environment and then restores that of the host. Callbacks run in the host's environment; changes that a callback makes to
+//! this environment remain.
 
 use std::cell::Cell;
 
 thread_local! {
-    /// The host's environment, while a call of ours runs on this thread.
+    /// The host's environment. None: this thread is not in a call of the library.
     static HOST: Cell<Option<Register>> = const { Cell::new(None) };
 }
 
-/// Restores the host's environment when dropped.
+/// While this value lives, its thread has the default environment. The drop restores the host's environment.
 pub struct DefaultEnvironment {
     /// The host's environment of the outer call, if this call is made in a callback.
     outer: Option<Register>,
@@ -18,14 +19,14 @@ pub struct DefaultEnvironment {
 type Register = u32;
 #[cfg(target_arch = "aarch64")]
 type Register = u64;
-/// Unknown architectures keep the environment they have.
+/// On other architectures the library does not change the environment.
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 type Register = ();
 
-/// MXCSR: all exceptions masked, round to nearest, denormals kept.
+/// The default of the register MXCSR: all exceptions masked, round to nearest, denormals kept.
 #[cfg(target_arch = "x86_64")]
 const DEFAULT: Register = 0x1f80;
-/// FPCR: no traps, round to nearest, denormals kept.
+/// The default of the register FPCR: no traps, round to nearest, denormals kept.
 #[cfg(target_arch = "aarch64")]
 const DEFAULT: Register = 0;
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
@@ -41,8 +42,8 @@ fn read() -> Register {
 
 #[cfg(target_arch = "x86_64")]
 fn write(value: Register) {
-    // SAFETY: only values read by stmxcsr or the architecture's default are loaded. The compiler assumes the default
-    // environment, which is what the library runs in between the two writes.
+    // SAFETY: the value is the default, or one that stmxcsr has read. The compiler assumes the default environment, and Rust code of the library runs
+    // only in that.
     unsafe { std::arch::asm!("ldmxcsr [{}]", in(reg) &value, options(nostack, preserves_flags, readonly)) };
 }
 
@@ -56,7 +57,7 @@ fn read() -> Register {
 
 #[cfg(target_arch = "aarch64")]
 fn write(value: Register) {
-    // SAFETY: only values read from the register, or its default.
+    // SAFETY: the value is the default, or one that was read from the register.
     unsafe { std::arch::asm!("msr fpcr, {}", in(reg) value, options(nomem, nostack, preserves_flags)) };
 }
 
@@ -67,7 +68,7 @@ fn read() -> Register {}
 fn write(_: Register) {}
 
 impl DefaultEnvironment {
-    /// Switches to the default environment.
+    /// Stores the host's environment and switches to the default one.
     pub fn enter() -> DefaultEnvironment {
         let outer = HOST.replace(Some(read()));
         write(DEFAULT);
@@ -83,7 +84,8 @@ impl Drop for DefaultEnvironment {
     }
 }
 
-/// Calls a function of the host's in the host's environment, then goes on in the default one.
+/// Calls a function of the host in the host's environment, then switches back to the default one. Outside a call of the library the environment is
+/// not changed.
 #[inline(never)]
 pub fn in_host_environment<R>(call: impl FnOnce() -> R) -> R {
     let Some(host) = HOST.get() else { return call() };

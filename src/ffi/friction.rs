@@ -1,4 +1,4 @@
-//! `contact_normal_friction`.
+//! `contact_normal_friction`, and its translation to a [`Friction`].
 
 use super::arguments::{optional, reserved, switch, unknown, GivenEffect, Regions};
 use super::influence::{contact_normal_influence, contact_normal_row_tables};
@@ -8,44 +8,45 @@ use crate::friction::{EXTERIOR, PLASTIC, SLIP, STICK};
 use crate::grid::Grid;
 use crate::scene::{Branch, Each, Fall, Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous};
 
-/// `motion`: sideways and about the normal, without rolling.
+/// `motion`: the bodies slide along the surface and turn about the normal, without rolling.
 pub const CONTACT_NORMAL_MOTION_SHIFT: i32 = 0;
-/// `motion`: a step of rolling, from the tractions before.
+/// `motion`: a step of rolling, which begins with the previous tractions.
 pub const CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING: i32 = 1;
-/// `motion`: rolling that does not change any more; the tractions before are only where the iteration starts.
+/// `motion`: rolling whose tractions no longer change. Previous tractions are only an initial guess.
 pub const CONTACT_NORMAL_MOTION_STEADY_ROLLING: i32 = 2;
 
-/// `prescribed`: the creepage of a direction is given.
+/// `prescribed`: the creepage of a direction is prescribed.
 pub const CONTACT_NORMAL_PRESCRIBED_CREEPAGE: i32 = 0;
-/// `prescribed`: the tangential force of a direction is given, its creepage is found.
+/// `prescribed`: the tangential force of a direction is prescribed, and the creepage is computed.
 pub const CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE: i32 = 1;
 
 /// `law`: the coefficient does not depend on the slip.
 pub const CONTACT_NORMAL_FRICTION_LAW_COULOMB: i32 = 0;
-/// `law`: parts fall as `max(0, 1 - v/(2 h))`.
+/// `law`: both falling parts f(v) are `max(0, 1 - v/(2 h))`.
 pub const CONTACT_NORMAL_FRICTION_LAW_LINEAR: i32 = 1;
-/// `law`: the first part falls as `1/(1 + v/h)`, the second as `1/(1 + (v/h)^2)`.
+/// `law`: the first falling part f(v) is `1/(1 + v/h)`, the second one `1/(1 + (v/h)^2)`.
 pub const CONTACT_NORMAL_FRICTION_LAW_RATIONAL: i32 = 2;
-/// `law`: parts fall as `2^(-v/h)`.
+/// `law`: both falling parts f(v) are `2^(-v/h)`.
 pub const CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL: i32 = 3;
-/// `friction->branch`: the solution near the start of the iteration. If that finds none and no force is given, it begins again from turns of LOW.
+/// `friction->branch`: the solution near the initial guess. If the iteration finds none and no force is prescribed, it starts again from an iterate
+/// of LOW.
 pub const CONTACT_NORMAL_FRICTION_BRANCH_NEAR: i32 = 0;
-/// `friction->branch`: that to which bounds without slip lead.
+/// `friction->branch`: the solution of an iteration that starts from the traction bounds without slip.
 pub const CONTACT_NORMAL_FRICTION_BRANCH_LOW: i32 = 1;
-/// `friction->branch`: that to which bounds of any speed lead.
+/// `friction->branch`: the solution of an iteration that starts from the traction bounds of unlimited slip.
 pub const CONTACT_NORMAL_FRICTION_BRANCH_HIGH: i32 = 2;
 
 /// `fields->stick_slip`: the element is not in contact.
 pub const CONTACT_NORMAL_STICK_SLIP_EXTERIOR: i32 = 0;
-/// `fields->stick_slip`: it sticks.
+/// `fields->stick_slip`: the element sticks.
 pub const CONTACT_NORMAL_STICK_SLIP_STICK: i32 = 1;
-/// `fields->stick_slip`: it slips.
+/// `fields->stick_slip`: the element slips.
 pub const CONTACT_NORMAL_STICK_SLIP_SLIP: i32 = 2;
 
-/// `fields->stick_slip`: it slips within a layer that yields, below mu p.
+/// `fields->stick_slip`: the element slips because a plastic layer yields, at a traction below mu p.
 pub const CONTACT_NORMAL_STICK_SLIP_PLASTIC: i32 = 3;
 
-// The core has constants of its own, which it writes to `stick_slip`.
+// The core writes its own constants to `stick_slip`.
 const _: () = assert!(
     CONTACT_NORMAL_STICK_SLIP_EXTERIOR == EXTERIOR
         && CONTACT_NORMAL_STICK_SLIP_STICK == STICK
@@ -53,112 +54,111 @@ const _: () = assert!(
         && CONTACT_NORMAL_STICK_SLIP_PLASTIC == PLASTIC
 );
 
-/// Effect: friction, `|q| <= mu p`. Tractions q act on body 1; the slip s is that of body 1 over body 2: a length, that of the step.
-/// Creepages and spin of a shift are lengths and an angle; of rolling they are divided by the length rolled. A negative creepage in x
-/// gives a positive force in x. Rigid slips must be less than 1e140, and so must previous tractions, except in steady rolling. The rms of rigid
-/// slips must lie between 1e-60 and 1e30 times what tractions of the size of mu p displace their own element by, or be 0
-/// (INVALID_ARGUMENT). See docs/friction.md.
+/// Effect: friction, `|q| <= mu p`. Tractions q act on body 1. The slip s is that of body 1 over body 2 in the step, a length. The creepages of a
+/// shift are lengths, and its spin is an angle; those of rolling are divided by the length rolled. A negative creepage in x gives a positive force
+/// in x. Rigid slips must be less than 1e140, and so must previous tractions, except in steady rolling. The rms of the rigid slips must be 0, or
+/// between 1e-60 and 1e30 times the displacement of an element by a traction of mu p on itself (INVALID_ARGUMENT). See docs/friction.md.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_friction {
     /// Set by `contact_normal_friction_init`.
     pub struct_size: i64,
-    /// mu of all elements, >= 0; default 0. Not read if there are `coefficients`.
+    /// The coefficient of friction mu of all elements, >= 0; default 0. Not read if there are `coefficients`.
     pub coefficient: f64,
-    /// mu of each element, `[my][mx]`, or NULL (default).
+    /// The coefficient of friction mu of each element, `[my][mx]`, or NULL (default).
     pub coefficients: *const f64,
     /// CONTACT_NORMAL_MOTION_...; default SHIFT.
     pub motion: i32,
-    /// 1: from the tractions that this handle found last, solves without friction aside (not in a batch); those of a
-    /// solve that stopped early, or was cancelled, count. 0 (default): `previous_traction`.
+    /// 1: the tractions before the step are those of this handle's last solve with friction, also if it stopped early or was cancelled (not in a
+    /// batch). 0 (default): `previous_traction`.
     pub continues: i32,
-    /// Of x and y: CONTACT_NORMAL_PRESCRIBED_CREEPAGE or _TANGENTIAL_FORCE; default CREEPAGE.
+    /// In x and in y: CONTACT_NORMAL_PRESCRIBED_CREEPAGE or _TANGENTIAL_FORCE; default CREEPAGE.
     pub prescribed: [i32; 2],
-    /// In x and y; default 0. Not read where the force is prescribed.
+    /// The creepages in x and in y; default 0. Not read in a direction whose force is prescribed.
     pub creepage: [f64; 2],
-    /// About the normal; default 0.
+    /// The spin about the normal; default 0.
     pub spin: f64,
-    /// Where the spin turns about and the moment is taken, from the middle of the grid: lengths; default 0.
+    /// The axis of the spin and of the moment, relative to the middle of the grid, lengths; default 0.
     pub spin_centre: [f64; 2],
-    /// The sum of q dx dy in x and y; default 0. Not read where the creepage is prescribed.
+    /// The forces in x and in y, the sums of q dx dy; default 0. Not read in a direction whose creepage is prescribed.
     pub force: [f64; 2],
     /// The length rolled in the step, at most a million elements; default 0: dx.
     pub rolling_distance: f64,
-    /// The direction of rolling: an angle from the x axis, in radians; default 0.
+    /// The direction of rolling: the angle from the x axis, in radians; default 0.
     pub rolling_direction: f64,
-    /// In rolling with spin: the part of the step by which places are ahead; default 1/6.
+    /// In rolling, the slip due to spin is that at a point ahead of the element's centre, by this part of the length rolled; default 1/6.
     pub spin_offset: f64,
-    /// The tractions before, in x and y, `[my][mx]` each, both or none; NULL (default): none, a start from rest.
+    /// The tractions before the step in x and in y, `[my][mx]` each, both or none; NULL (default): there are none, the bodies are at rest.
     pub previous_traction: [*const f64; 2],
-    /// A rigid slip in addition, in x and y, lengths of the step, `[my][mx]` each, both or none; default NULL.
+    /// An additional rigid slip in x and in y, lengths per step, `[my][mx]` each, both or none; default NULL.
     pub rigid_slip: [*const f64; 2],
-    /// Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
-    /// y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
-    /// even in x and in y, and xy odd in both (UNSUPPORTED otherwise). In steady rolling of like bodies y alone counts: coefficients that
-    /// are uneven in x are those of bodies that roll in one direction. Steps must then go in that direction, also where `scene->influence` is
-    /// uneven in x (INVALID_ARGUMENT otherwise). Rolling needs steps of whole elements, and tables that reach across the contact area and a
-    /// step. The tables belong to the set-up of a solver: later scenes may leave them out, and others are refused (INFLUENCE_CHANGED). With
-    /// `scene->influence` or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` must be given.
+    /// Tangential influence coefficients of your own instead of the half-space's. xx: the displacement in x by a unit traction in x; yy: that in y
+    /// by one in y; xy: that in x by one in y, and in y by one in x. All or none, default NULL; all with the same cx, cy and scale. xx and yy must
+    /// be even in x and in y, and xy odd in both (UNSUPPORTED otherwise). In steady rolling of like bodies this is needed in y only: coefficients
+    /// that are uneven in x belong to bodies that roll in one direction. Steps must have this direction, also if `scene->influence` is uneven in x
+    /// (INVALID_ARGUMENT otherwise). Rolling needs steps of whole elements, and tables that reach across the contact area and a step. The tables
+    /// belong to the set-up of a solver: later scenes may leave them out, and other tables are refused (INFLUENCE_CHANGED). With `scene->influence`
+    /// or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` must be given.
     pub influence: [*const contact_normal_influence; 3],
-    /// With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure; with the same cx, cy and
-    /// scale, both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
-    /// then displace along the normal by -(xz qx + yz qy), and both problems are solved in turns.
+    /// With `influence`, for unlike bodies: xz and yz, the displacements in x and in y by a unit pressure, with the same cx, cy and scale, both or
+    /// none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions then displace the surfaces
+    /// along the normal by -(xz qx + yz qy), and the normal and the tangential problem are solved in turns.
     pub influence_cross: [*const contact_normal_influence; 2],
-    /// 1: derivatives of forces and moment by creepages and spin, in `report->tangential.sensitivities`; default 0.
+    /// 1: `report->tangential.sensitivities` gets the derivatives of the forces and the moment by creepages and spin; default 0.
     pub sensitivities: i32,
     /// Must be 0.
     pub reserved: i32,
-    /// Tractions in x and y to start the iteration from, `[my][mx]` each, both or none; default NULL. The solution does not depend on them:
-    /// those of a step that differs little save most of the work. Where they are far from it, the iteration starts without them.
+    /// The initial guess of the tractions in x and in y, `[my][mx]` each, both or none; default NULL. The solution does not depend on it. The
+    /// tractions of a similar step save most of the work. If the guess is far from the solution, the iteration starts without it.
     pub initial_traction: [*const f64; 2],
-    /// The compliance of a thin elastic layer between the bodies, a length per traction, >= 0: it displaces by that times the traction on
-    /// it. Of a third body of thickness h and shear modulus G it is h/G. Default 0: none. Not read if there are `compliances`.
+    /// The compliance of a thin elastic layer between the bodies, the tangential displacement per traction, >= 0. A third body of thickness h and
+    /// shear modulus G has h/G. Default 0: no layer. Not read if there are `compliances`.
     pub compliance: f64,
-    /// That of each element, `[my][mx]`, or NULL (default).
+    /// The compliance of each element, `[my][mx]`, or NULL (default).
     pub compliances: *const f64,
-    /// How much of a creepage in x, in y reaches each element, in [-1, 1], `[my][mx]` each, both or none; default NULL: 1. For surfaces that are
-    /// inclined within the contact area: the cosine. The forces that are prescribed are the sums of these times q dx dy.
+    /// The weights of the creepages in x and in y at each element, in [-1, 1], `[my][mx]` each, both or none; default NULL: 1. On a surface that is
+    /// inclined within the contact area a weight is the cosine. Prescribed forces are the sums of q dx dy times the weight.
     pub creepage_weight: [*const f64; 2],
-    /// Own tangential influence coefficients that differ per loaded row, instead of `influence`: xx, yy and xy, the displacement in x by a
-    /// unit traction in x, in y by one in y, and in x by one in y. All or none, default NULL; all with the same cx, rows and scale. The
-    /// operator must be symmetric (UNSUPPORTED otherwise): xx of the loaded row jy and the row iy at offset k is xx of jy and iy exchanged at
-    /// -k, and so is yy. The displacement in y by a unit traction in x is xy of the rows exchanged at -k. Rolling needs steps of whole
-    /// elements along x; cx must reach across the contact area and a step. Otherwise as `influence`; unlike bodies are refused.
+    /// Tangential influence coefficients of your own that differ from loaded row to loaded row, instead of `influence`. xx: the displacement in x by
+    /// a unit traction in x; yy: that in y by one in y; xy: that in x by one in y. All or none, default NULL; all with the same cx, rows and scale.
+    /// The operator must be symmetric (UNSUPPORTED otherwise): if the loaded and the displaced row are exchanged, xx at offset -k equals xx at offset
+    /// k, and so does yy. The displacement in y by a unit traction in x is xy of the exchanged rows at -k. Rolling needs steps of whole elements
+    /// along x; cx must reach across the contact area and a step. All else is as for `influence`; unlike bodies are refused.
     pub row_tables: [*const contact_normal_row_tables; 3],
-    /// How mu falls with the slip velocity v: CONTACT_NORMAL_FRICTION_LAW_...; default COULOMB: not at all, and what goes with it is not
-    /// read. mu(v) is the coefficient times `(kinetic + falling[0] f(v) + falling[1] f(v))/(kinetic + falling[0] + falling[1])`, so that
-    /// `coefficient` is that at rest. Bodies must be alike, and `sensitivities` be 0 (UNSUPPORTED otherwise). See docs/laws.md.
+    /// How mu falls with the slip velocity v: CONTACT_NORMAL_FRICTION_LAW_...; default COULOMB: mu is constant, and the members of laws are not read.
+    /// mu(v) is the coefficient times `(kinetic + falling[0] f(v) + falling[1] f(v))/(kinetic + falling[0] + falling[1])`, so `coefficient` is mu at
+    /// rest. Bodies must be alike, and `sensitivities` must be 0 (UNSUPPORTED otherwise). See docs/laws.md.
     pub law: i32,
     /// Must be 0.
     pub reserved_for_law: i32,
-    /// The part of mu that stays at high speed, >= 0; default 0. Only ratios of this and of `falling` count.
+    /// The part of mu that remains at high slip velocity, >= 0; default 0. Only the ratios of `kinetic` and `falling` matter.
     pub kinetic: f64,
-    /// The parts of mu that fall, two of them, >= 0; default 0.
+    /// The two parts of mu that fall, >= 0; default 0.
     pub falling: [f64; 2],
-    /// The slip velocity h of each part, at which half of it is left; > 0 where the part is.
+    /// The slip velocity h at which each falling part is a half of its value at rest; > 0 if the part is not 0.
     pub half_speed: [f64; 2],
-    /// The speed of rolling, > 0: a step takes the length rolled divided by it, and v is the slip divided by that.
+    /// The speed of rolling, > 0. The duration of a step is the length rolled divided by this speed; v is the slip divided by the duration.
     pub speed: f64,
-    /// The duration of a shift, > 0: a time.
+    /// The duration of a shift, > 0.
     pub time_step: f64,
-    /// The distance of slip over which mu follows, >= 0; default 0: at once.
+    /// The distance of slip over which mu approaches mu(v), >= 0; default 0: mu is mu(v) at once.
     pub memory_distance: f64,
-    /// The least slip velocity by which it follows, >= 0; default 0.
+    /// Below this slip velocity mu approaches mu(v) as fast as at this velocity, >= 0; default 0.
     pub memory_speed: f64,
-    /// Of a layer between the bodies: the traction at which fresh material yields; `|q| <= min(mu p, yield_limit + hardening * slip)`. Default
-    /// 0: it does not yield.
+    /// For a plastic layer between the bodies: the traction at which fresh material yields, `|q| <= min(mu p, yield_limit + hardening * slip)`.
+    /// Default 0: no layer yields.
     pub yield_limit: f64,
-    /// The change of the limit by a length of plastic slip, a traction per length; < 0: it softens. Default 0: ideal plastic. Otherwise
-    /// bodies and `sensitivities` as with a `law`.
+    /// The change of the yield limit per plastic slip, a traction per length; < 0: the layer softens. Default 0: ideal plasticity. If it is not 0,
+    /// the rules for bodies and `sensitivities` are those of a `law`.
     pub hardening: f64,
-    /// mu that particles of the interface had before the step, of a law with memory, `[my][mx]`; default NULL: that at rest, and with
-    /// `continues` what the handle found. Zeros alone, which a step without a law writes, count as NULL. In transient rolling a particle comes from its
-    /// old place; steady rolling does not read it.
+    /// For a law with memory: mu of the particles of the interface before the step, `[my][mx]`. Default NULL: mu at rest or, with `continues`, the
+    /// values of the handle. An array of zeros, which a step without a law writes, counts as NULL. In transient rolling these are the particles at
+    /// the elements before the step. Steady rolling does not read it.
     pub previous_coefficient: *const f64,
-    /// Their yield limits; default NULL: `yield_limit`. Zeros alone count as NULL.
+    /// The yield limits of the same particles; default NULL: `yield_limit`. An array of zeros counts as NULL.
     pub previous_yield_limit: *const f64,
-    /// Which solution, of a law or a layer that hardens or softens: CONTACT_NORMAL_FRICTION_BRANCH_...; default NEAR. Others take several times as many
-    /// products, and creepages in both directions (UNSUPPORTED otherwise).
+    /// The wanted solution, if a law, or a layer that hardens or softens, allows several: CONTACT_NORMAL_FRICTION_BRANCH_...; default NEAR. LOW and
+    /// HIGH take several times as many products, and need prescribed creepages in both directions (UNSUPPORTED otherwise).
     pub branch: i32,
     /// Must be 0.
     pub reserved_for_branch: i32,
@@ -196,9 +196,9 @@ impl contact_normal_friction {
         let (coefficients_before, yield_limits) =
             unsafe { (optional(self.previous_coefficient, n), optional(self.previous_yield_limit, n)) };
         // A step without a law or a layer writes zeros.
-        let is_of_none = |values: &&[f64]| values.iter().all(|value| *value == 0.0);
+        let is_zero = |values: &&[f64]| values.iter().all(|value| *value == 0.0);
         let [coefficients_before, yield_limits] =
-            [coefficients_before, yield_limits].map(|values| values.filter(|values| !is_of_none(values)));
+            [coefficients_before, yield_limits].map(|values| values.filter(|values| !is_zero(values)));
         let (coefficients, compliances) =
             unsafe { (optional(self.coefficients, grid.len()), optional(self.compliances, grid.len())) };
         Ok(Friction {

@@ -1,4 +1,4 @@
-//! `contact_normal_friction_results`: where the results of tangential problems are written.
+//! `contact_normal_friction_results`: the caller's arrays for the results of tangential problems.
 
 use super::arguments::Regions;
 use super::conclusion::Conclusion;
@@ -9,17 +9,17 @@ use super::watcher::why;
 use crate::friction::{Report, Solution};
 use crate::solver::{Ended, Outcome};
 
-/// Where the results of n entries are written; NULL (the default of each): not wanted.
+/// The caller's arrays for the results of n entries. NULL (the default of each): not wanted.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_friction_results {
     /// Set by `contact_normal_friction_results_init`.
     pub struct_size: i64,
-    /// The sums of q dx dy in x and y, on body 1, `[n][2]`.
+    /// The forces on body 1 in x and in y, the sums of q dx dy, `[n][2]`.
     pub force: *mut f64,
-    /// The sums of (x qy - y qx) dx dy about the centre of spin, `[n]`.
+    /// The moments about the centre of spin, the sums of (x qy - y qx) dx dy, `[n]`.
     pub moment: *mut f64,
-    /// Creepages in x and y, given or found, `[n][2]`.
+    /// The creepages in x and in y, prescribed or computed, `[n][2]`.
     pub creepage: *mut f64,
     /// As `tangential.residual` of the report, `[n]`.
     pub residual: *mut f64,
@@ -33,9 +33,9 @@ pub struct contact_normal_friction_results {
     pub slip_count: *mut i64,
     /// The status of each entry, `[n]`.
     pub status: *mut contact_normal_status,
-    /// Tractions, `[n][2][my][mx]`: those in x and then those in y of each entry.
+    /// The tractions, `[n][2][my][mx]`: for each entry those in x, then those in y.
     pub traction: *mut f64,
-    /// Slip, `[n][2][my][mx]`.
+    /// The slip, `[n][2][my][mx]`: for each entry that in x, then that in y.
     pub slip: *mut f64,
     /// CONTACT_NORMAL_STICK_SLIP_... of each element, `[n][my][mx]`.
     pub stick_slip: *mut i32,
@@ -47,19 +47,19 @@ pub struct contact_normal_friction_results {
 
 versioned! { contact_normal_friction_results, contact_normal_friction_results_init, 104 }
 
-// SAFETY: the pointers are the caller's, who does not touch their memory during the call. Each entry has its own part of it.
+// SAFETY: the caller does not touch the memory of the pointers during the call, and each entry has its own part of this memory.
 unsafe impl Sync for contact_normal_friction_results {}
 
 impl contact_normal_friction_results {
-    /// Adds the struct, and the outputs of n entries on `elements` elements, to the regions.
+    /// Adds the struct at `address`, and the arrays for n entries on a grid of `elements` elements, to the regions.
     pub(super) fn add_to(
         &self,
         regions: &mut Regions,
-        at: *const contact_normal_friction_results,
+        address: *const contact_normal_friction_results,
         (n, elements): (usize, usize),
     ) -> Result<(), Refusal> {
         let fields = n.saturating_mul(elements);
-        regions.input_struct(at, self)?;
+        regions.input_struct(address, self)?;
         regions.output("force", self.force, n.saturating_mul(2))?;
         regions.output("moment", self.moment, n)?;
         regions.output("creepage", self.creepage, n.saturating_mul(2))?;
@@ -76,15 +76,15 @@ impl contact_normal_friction_results {
         regions.output("yield_limit", self.yield_limit, fields)
     }
 
-    /// Writes the status and the results of entry i.
+    /// Writes the status and the results of entry i. Returns its conclusion.
     pub(super) unsafe fn write(&self, i: usize, ended: Ended, solution: Option<&Solution>) -> Conclusion {
-        let outcome = match &ended {
-            Ok((stop, report)) => Conclusion::of(*stop, || said(*stop, report)),
+        let conclusion = match &ended {
+            Ok((outcome, report)) => Conclusion::of(*outcome, || message(*outcome, report)),
             Err(error) => Refusal::from(error.clone()).into(),
         };
         // SAFETY (all): by the caller: NULL or room for all entries.
         unsafe {
-            put(self.status, i, outcome.status);
+            put(self.status, i, conclusion.status);
             if let (Ok((_, report)), Some(solution)) = (&ended, solution) {
                 put(self.force.cast::<[f64; 2]>(), i, report.force);
                 put(self.moment, i, report.moment);
@@ -109,10 +109,10 @@ impl contact_normal_friction_results {
                 }
             }
         }
-        outcome
+        conclusion
     }
 
-    /// For calls that `max_seconds` ended: cancelled entries get the status ITERATION_LIMIT.
+    /// Called after a call that `max_seconds` ended: gives the cancelled ones of n entries the status ITERATION_LIMIT.
     pub(super) unsafe fn late(&self, n: usize) {
         for i in (0..n).filter(|_| !self.status.is_null()) {
             // SAFETY: not null: room for all entries, each with its status, by the caller.
@@ -125,20 +125,21 @@ impl contact_normal_friction_results {
     }
 }
 
-/// Writes value i of an output that is not NULL.
+/// Writes value i of an output; NULL: not wanted.
 unsafe fn put<T>(to: *mut T, i: usize, value: T) {
     if !to.is_null() {
-        // SAFETY: not null: room for it, by the caller.
+        // SAFETY: not null, so there is room for value i, by the caller.
         unsafe { to.add(i).write_unaligned(value) };
     }
 }
 
-/// Why an entry is not OK.
-fn said(stop: Outcome, found: &Report) -> String {
-    match stop {
-        Outcome::Cancelled => why(stop).into(),
+/// The message of an entry that did not converge.
+fn message(outcome: Outcome, report: &Report) -> String {
+    match outcome {
+        Outcome::Cancelled => why(outcome).into(),
         _ => {
-            format!("{}; the residual is {:e}{}", why(stop), found.certificate.residual, advice_on_law(found.law_slope))
+            let (residual, advice) = (report.certificate.residual, advice_on_law(report.law_slope));
+            format!("{}; the residual is {residual:e}{advice}", why(outcome))
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The tables of own tangential coefficients in `contact_normal_friction`.
+//! The caller's tables of tangential influence coefficients in `contact_normal_friction`.
 
 use super::arguments::{required, Regions};
 use super::friction::contact_normal_friction;
@@ -7,7 +7,7 @@ use super::status::{Refusal, CONTACT_NORMAL_UNSUPPORTED};
 use super::structs::{self, Versioned};
 use crate::scene::{Friction, TangentialInfluence};
 
-/// The tables of own coefficients: xx, yy, xy, and those of unlike bodies, xz, yz.
+/// The names of the tables xx, yy, xy and, for unlike bodies, xz, yz.
 const TABLES: [&str; 5] = [
     "friction->influence[0]",
     "friction->influence[1]",
@@ -16,42 +16,46 @@ const TABLES: [&str; 5] = [
     "friction->influence_cross[1]",
 ];
 
-/// Those per loaded row.
+/// The names of the tables xx, yy, xy per loaded row.
 const ROW_TABLES: [&str; 3] = ["friction->row_tables[0]", "friction->row_tables[1]", "friction->row_tables[2]"];
 
-/// The structs of some tables, as the caller's header has them; none if there are no tables.
-fn read<T: Versioned, const N: usize>(at: [*const T; N], names: [&str; N]) -> Result<Option<[Option<T>; N]>, Refusal> {
+/// Reads the structs of N tables. None: all pointers are NULL.
+fn read<T: Versioned, const N: usize>(
+    addresses: [*const T; N],
+    names: [&str; N],
+) -> Result<Option<[Option<T>; N]>, Refusal> {
     let mut tables = [None; N];
     for (k, table) in tables.iter_mut().enumerate() {
         // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
-        *table = unsafe { structs::read_optional(at[k], names[k])? };
+        *table = unsafe { structs::read_optional(addresses[k], names[k])? };
     }
     Ok(tables.iter().any(Option::is_some).then_some(tables))
 }
 
-/// The contents of a table, and the places of its values.
+/// The members of a table, each with its name, and the address of its coefficients.
 type Given = ([(&'static str, f64); 3], *const f64);
 
-/// The values of table k. A table whose members differ from those of the first one is refused.
+/// The `size` coefficients of table k. Refuses a table whose members differ from those of the first table.
 fn values<'a, T>(
     (tables, names): (&[Option<T>], &[&str]),
     (k, size): (usize, usize),
     given: impl Fn(&T) -> Given,
 ) -> Result<&'a [f64], Refusal> {
-    let of = |k: usize| tables[k].as_ref().map(&given).ok_or_else(|| Refusal::null(names[k]));
-    let ((members, at), (of_first, _)) = (of(k)?, of(0)?);
-    if let Some(((member, value), (_, first))) =
-        members.iter().zip(of_first).find(|((_, value), first)| *value != first.1)
-    {
-        let (name, of) = (names[k], names[0]);
-        return Err(Refusal::invalid(format!("{name}->{member} is {value}; it must be {first}, as that of {of}")));
+    let table = |k: usize| tables[k].as_ref().map(&given).ok_or_else(|| Refusal::null(names[k]));
+    let ((members, coefficients), (members_of_first, _)) = (table(k)?, table(0)?);
+    let differs = |((_, value), (_, first)): &(&(_, f64), (_, f64))| value != first;
+    if let Some(((member, value), (_, first))) = members.iter().zip(members_of_first).find(differs) {
+        let (name, first_name) = (names[k], names[0]);
+        return Err(Refusal::invalid(format!(
+            "{name}->{member} is {value}; it must be {first}, as that of {first_name}"
+        )));
     }
     // SAFETY: NULL or as many values as the members say, by the conventions of the ABI.
-    unsafe { required(&format!("{}->coefficients", names[k]), at, size) }
+    unsafe { required(&format!("{}->coefficients", names[k]), coefficients, size) }
 }
 
 impl contact_normal_friction {
-    /// A friction that has the tables only.
+    /// A [`Friction`] that has nothing but the tables.
     pub(super) fn tables_alone<'a>(&self) -> Result<Friction<'a>, Refusal> {
         Ok(Friction { influence: self.own_influence()?, ..Friction::new(0.0) })
     }
@@ -62,13 +66,13 @@ impl contact_normal_friction {
         read([xx, yy, xy, xz, yz], TABLES)
     }
 
-    /// The caller's own tangential coefficients.
+    /// The caller's tangential influence coefficients. None: the friction has no tables.
     pub(super) fn own_influence<'a>(&self) -> Result<Option<TangentialInfluence<'a>>, Refusal> {
         let (tables, rows) = (self.tables()?, read(self.row_tables, ROW_TABLES)?);
         match (tables, rows) {
             (None, None) => Ok(None),
-            (Some(tables), None) => of_offsets(tables).map(Some),
-            (None, Some(tables)) => of_rows(tables).map(Some),
+            (Some(tables), None) => by_offset(tables).map(Some),
+            (None, Some(tables)) => by_row(tables).map(Some),
             (Some([None, None, None, ..]), Some(_)) => Err(Refusal::new(
                 CONTACT_NORMAL_UNSUPPORTED,
                 "friction->row_tables and friction->influence_cross are both given; unlike bodies are not solved with tables per row"
@@ -81,23 +85,23 @@ impl contact_normal_friction {
         }
     }
 
-    /// The part of the tables that a call reads.
+    /// Adds the tables that a call reads.
     pub(super) fn add_tables_to(&self, regions: &mut Regions) -> Result<(), Refusal> {
-        let (at, tables) = (self.influence.into_iter().chain(self.influence_cross), self.tables()?);
+        let (addresses, tables) = (self.influence.into_iter().chain(self.influence_cross), self.tables()?);
         let first = tables.and_then(|tables| tables[0]);
-        for ((at, table), name) in at.zip(tables.iter().flatten()).zip(TABLES) {
+        for ((address, table), name) in addresses.zip(tables.iter().flatten()).zip(TABLES) {
             let Some(table) = table else { continue };
-            regions.input_struct(at, table)?;
-            // A table of another size than the first is refused later, so it is not read.
+            regions.input_struct(address, table)?;
+            // A table whose size differs from that of the first one is refused later, so its coefficients are not read.
             if first.is_some_and(|first| (first.cx, first.cy) == (table.cx, table.cy)) {
                 regions.input(name, table.coefficients, table.size(name)?.2)?;
             }
         }
         let rows = read(self.row_tables, ROW_TABLES)?;
         let first = rows.and_then(|tables| tables[0]);
-        for ((at, table), name) in self.row_tables.into_iter().zip(rows.iter().flatten()).zip(ROW_TABLES) {
+        for ((address, table), name) in self.row_tables.into_iter().zip(rows.iter().flatten()).zip(ROW_TABLES) {
             let Some(table) = table else { continue };
-            regions.input_struct(at, table)?;
+            regions.input_struct(address, table)?;
             if first.is_some_and(|first| (first.cx, first.rows) == (table.cx, table.rows)) {
                 regions.input(name, table.coefficients, table.size_on(None, name)?.2)?;
             }
@@ -106,7 +110,8 @@ impl contact_normal_friction {
     }
 }
 
-fn of_offsets<'a>(tables: [Option<contact_normal_influence>; 5]) -> Result<TangentialInfluence<'a>, Refusal> {
+/// Translates tables for all elements, over the offsets in x and in y.
+fn by_offset<'a>(tables: [Option<contact_normal_influence>; 5]) -> Result<TangentialInfluence<'a>, Refusal> {
     let first = tables[0].ok_or_else(|| Refusal::null(TABLES[0]))?;
     let (cx, cy, size) = first.size(TABLES[0])?;
     let given = |table: &contact_normal_influence| -> Given {
@@ -119,7 +124,8 @@ fn of_offsets<'a>(tables: [Option<contact_normal_influence>; 5]) -> Result<Tange
     Ok(TangentialInfluence { cx, cy, by_row: false, coefficients, cross, scale: first.scale })
 }
 
-fn of_rows<'a>(tables: [Option<contact_normal_row_tables>; 3]) -> Result<TangentialInfluence<'a>, Refusal> {
+/// Translates tables per loaded row.
+fn by_row<'a>(tables: [Option<contact_normal_row_tables>; 3]) -> Result<TangentialInfluence<'a>, Refusal> {
     let first = tables[0].ok_or_else(|| Refusal::null(ROW_TABLES[0]))?;
     let (cx, cy, size) = first.size_on(None, ROW_TABLES[0])?;
     let given = |table: &contact_normal_row_tables| -> Given {

@@ -1,4 +1,4 @@
-//! The guard that every export goes through: floating-point environment, panics, status, message.
+//! The guard in which every exported function runs. It sets the floating-point environment, catches panics, and makes the status and the message.
 
 use std::cell::Cell;
 use std::panic::{catch_unwind, AssertUnwindSafe};
@@ -9,19 +9,20 @@ use super::status::{contact_normal_status, set_last_error, Refusal, CONTACT_NORM
 use crate::threads::is_worker;
 
 thread_local! {
+    /// Whether this thread is in a call of the library.
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Runs `body` in the default floating-point environment; a refusal or a panic becomes a status and a message.
+/// Calls `body` in the default floating-point environment. A refusal or a panic becomes a status and a message.
 pub fn guard(body: impl FnOnce() -> Result<contact_normal_status, Refusal>) -> contact_normal_status {
     let _inside = Inside::enter();
     status_of(caught(body))
 }
 
-/// A call of the library on this thread, in the default floating-point environment, until it is dropped.
+/// While this value lives, its thread is in a call of the library, and has the default floating-point environment.
 pub(super) struct Inside {
     _environment: DefaultEnvironment,
-    /// Whether the call is made in a callback of another one.
+    /// Whether the call is made in a callback of another call.
     nested: bool,
 }
 
@@ -38,7 +39,7 @@ impl Drop for Inside {
     }
 }
 
-/// The result of `work`; a panic becomes a refusal.
+/// Calls `work` and returns its result. A panic becomes a refusal.
 pub(super) fn caught<T>(work: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     let ended = catch_unwind(AssertUnwindSafe(|| {
         silence_our_panics();
@@ -53,7 +54,7 @@ pub(super) fn caught<T>(work: impl FnOnce() -> Result<T, Refusal>) -> Result<T, 
     })
 }
 
-/// The status of a call. The message of a refusal becomes that of this thread; for a status > 0 the call has set it.
+/// The status of a call. The message of a refusal becomes that of this thread. For a status > 0 the call itself has set the message.
 pub(super) fn status_of(ended: Result<contact_normal_status, Refusal>) -> contact_normal_status {
     let status = caught(|| {
         ended.or_else(|refusal| {
@@ -61,16 +62,16 @@ pub(super) fn status_of(ended: Result<contact_normal_status, Refusal>) -> contac
             Ok(refusal.status)
         })
     });
-    // A message that cannot be formed is left out.
+    // If setting the message panics, the status has no message.
     status.unwrap_or(CONTACT_NORMAL_INTERNAL)
 }
 
-/// The library prints nothing, so that a panic that the guard will catch must not be announced on stderr. The previous hook handles panics elsewhere
-/// in the process.
+/// Sets a panic hook that prints nothing for panics in the library: the guard catches these, and the library never writes to stderr. The previous
+/// hook handles panics elsewhere in the process.
 fn silence_our_panics() {
-    // No thread waits for the one that sets the hook: a process that is forked meanwhile does not have that thread.
+    // No lock: a process that is forked while another thread sets the hook would wait for a thread that it does not have.
     static IS_DONE: AtomicBool = AtomicBool::new(false);
-    // The hook cannot be changed while this thread unwinds; the next call changes it.
+    // A thread that unwinds cannot set the hook. The next call sets it.
     if std::thread::panicking() || IS_DONE.load(Ordering::Relaxed) || IS_DONE.swap(true, Ordering::Relaxed) {
         return;
     }

@@ -1,4 +1,4 @@
-//! `contact_normal_flash_temperature`.
+//! `contact_normal_flash_temperature`: the temperature of two surfaces that slide on each other.
 
 use super::arguments::{copy_to, count, not_negative, reserved, Regions};
 use super::guard::guard;
@@ -20,23 +20,24 @@ pub struct contact_normal_heat {
     pub mx: i32,
     /// Elements in y. Default 0: to be set.
     pub my: i32,
-    /// Length of an element in x. Default 0: to be set.
+    /// Element size in x. Default 0: to be set.
     pub dx: f64,
-    /// In y. Default 0: to be set.
+    /// Element size in y. Default 0: to be set.
     pub dy: f64,
-    /// The flux, `[my][mx]`, a power per area: of friction |q| times the speed of slip; below 0 it cools. Default NULL: to be set.
+    /// The heat flux into both bodies, `[my][mx]`, a power per area: with friction |q| times the slip velocity. A negative flux cools. Default NULL:
+    /// to be set.
     pub heat_flux: *const f64,
-    /// lambda of body 1 and 2, power per length and temperature. Default 0: to be set.
+    /// The conductivity lambda of body 1 and of body 2, a power per length and temperature. Default 0: to be set.
     pub conductivity: [f64; 2],
-    /// kappa = lambda/(density times heat capacity) of both, area per time. Default 0: to be set.
+    /// The diffusivity kappa = lambda/(density times heat capacity) of body 1 and of body 2, an area per time. Default 0: to be set.
     pub diffusivity: [f64; 2],
-    /// How fast each surface moves past the contact in +x, length per time, of any sign; 0 (default): it stands still. Of bodies that roll towards
-    /// +x at V both are -V.
+    /// The velocity with which each surface moves past the contact, positive towards +x, a length per time; 0 (default): the surface is at rest. For
+    /// bodies that roll towards +x at V both are -V.
     pub speed: [f64; 2],
-    /// The part of the heat that goes into body 1, 0 to 1; < 0 (default): that for which the largest temperatures of both are the same (Blok 1937),
-    /// and one half where no heat makes one of both warmer.
+    /// The part of the heat that flows into body 1, 0 to 1. < 0 (default): the part with which the largest temperatures of both bodies are equal
+    /// (Blok 1937), or one half if no part of the heat warms one of both bodies.
     pub share: f64,
-    /// Threads; 1: one (default), 0: all cores.
+    /// The number of threads; default 1; 0: all cores.
     pub threads: i32,
     /// Must be 0.
     pub reserved: i32,
@@ -50,23 +51,23 @@ versioned! { contact_normal_heat, contact_normal_heat_init, 104, share: -1.0, th
 pub struct contact_normal_flash {
     /// Set by `contact_normal_flash_init`.
     pub struct_size: i64,
-    /// The part of the heat that goes into body 1.
+    /// The part of the heat that flows into body 1.
     pub share: f64,
-    /// The largest rise of body 1 and 2, a temperature.
+    /// The largest rise of the temperature of body 1 and of body 2.
     pub largest: [f64; 2],
-    /// Where that is in x, from the middle of the grid, of body 1 and 2.
+    /// The place of the largest rise in x, from the middle of the grid, for body 1 and body 2.
     pub x: [f64; 2],
-    /// And in y.
+    /// The place of the largest rise in y, from the middle of the grid, for body 1 and body 2.
     pub y: [f64; 2],
 }
 
 versioned! { contact_normal_flash, contact_normal_flash_init, 64 }
 
-/// The steady flash temperature of both surfaces, above the temperature far away: each body is a half-space past which the sources of heat move
-/// (Jaeger 1942). Without motion it is that of a source at rest. `temperature`: `[2][my][mx]`, of body 1, then of body 2; NULL: not wanted.
-/// `flash` NULL: not wanted. The grid must hold all of the flux; downstream of it a rise beyond the grid is not computed. Products are FFTs; the
-/// set-up takes some hundred function values an element and body. INVALID_ARGUMENT, NOT_FINITE: numbers out of their range; NOT_FINITE: temperatures
-/// beyond the range of numbers. Since 0.2.
+/// Computes the steady flash temperature of both surfaces: the rise above the temperature far away. Each body is a half-space past which the sources
+/// of heat move (Jaeger 1942); without motion the sources are at rest. `temperature` `[2][my][mx]` gets the rise of body 1, then that of body 2;
+/// NULL: not wanted. `flash` NULL: not wanted. The grid must contain the whole flux; the rise downstream of the grid is not computed. The set-up
+/// takes some hundred function values for each element and body; the products are made by FFT. INVALID_ARGUMENT, NOT_FINITE: numbers are out of their
+/// range. NOT_FINITE: the temperatures are beyond the range of doubles. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_flash_temperature(
     heat: *const contact_normal_heat,
@@ -80,11 +81,11 @@ pub unsafe extern "C" fn contact_normal_flash_temperature(
             let (mx, my) = (count("heat->mx", given.mx)?, count("heat->my", given.my)?);
             reserved("heat->reserved", given.reserved)?;
             let grid = Grid::new(mx, my, given.dx, given.dy)?;
-            let written = structs::read_optional(flash.cast_const(), "flash")?;
+            let given_flash = structs::read_optional(flash.cast_const(), "flash")?;
             let mut regions = Regions::default();
             regions.input_struct(heat, &given)?;
-            if let Some(written) = &written {
-                regions.output_struct(flash, written)?;
+            if let Some(given_flash) = &given_flash {
+                regions.output_struct(flash, given_flash)?;
             }
             regions.input("heat->heat_flux", given.heat_flux, grid.len())?;
             regions.output("temperature", temperature, 2 * grid.len())?;
@@ -97,7 +98,7 @@ pub unsafe extern "C" fn contact_normal_flash_temperature(
             let threads = Threads::new(threads)?;
             let found = flash_temperature(&Heat { grid, flux, conductivity, diffusivity, speed, share }, &threads)?;
             found.rise.iter().enumerate().for_each(|(b, rise)| copy_to(rise, temperature, b));
-            if let Some(mut value) = written {
+            if let Some(mut value) = given_flash {
                 (value.share, value.largest) = (found.share, found.largest);
                 for (b, i) in found.at.into_iter().enumerate() {
                     [value.x[b], value.y[b]] = grid.place(i);

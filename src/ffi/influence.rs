@@ -1,4 +1,4 @@
-//! Coefficients of the caller's own: `contact_normal_influence`, `contact_normal_row_tables`.
+//! The caller's influence coefficients: `contact_normal_influence`, `contact_normal_row_tables`.
 
 use super::arguments::{count, required, GivenEffect, Regions};
 use super::status::Refusal;
@@ -6,50 +6,51 @@ use super::structs::versioned;
 use crate::grid::Grid;
 use crate::influence::{RowTables, Table};
 
-/// Effect: the caller's own influence coefficients instead of the half-space. Nothing is assumed of them but that a pressure
-/// displaces its own element inwards: they need be neither symmetric nor positive.
+/// Effect: influence coefficients of your own instead of the half-space's. They need be neither symmetric nor positive. But a pressure must displace
+/// its own element inwards, and must not displace another element by more (in the mean of both directions between two elements).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_influence {
     /// Set by `contact_normal_influence_init`.
     pub struct_size: i64,
-    /// The table covers offsets -cx..cx-1; cx >= mx. Default 0: to be set.
+    /// The table covers the offsets -cx to cx - 1 in x; cx >= mx. Default 0: to be set.
     pub cx: i32,
-    /// And -cy..cy-1; cy >= my. Default 0: to be set.
+    /// The table covers the offsets -cy to cy - 1 in y; cy >= my. Default 0: to be set.
     pub cy: i32,
-    /// `[2 cy][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, -cy:cy-1)`. `A_IJ = cf(ix - jx, iy - jy)`: the displacement
+    /// The table, `[2 cy][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, -cy:cy-1)`. `A_IJ = cf(ix - jx, iy - jy)` is the displacement
     /// of element I by a unit pressure on element J (length per pressure). Row -cy and column -cx are never read.
     /// Default NULL: to be set.
     pub coefficients: *const f64,
-    /// Every coefficient is multiplied by this, positive; default 1.
+    /// A positive factor on every coefficient; default 1.
     pub scale: f64,
 }
 
 versioned! { contact_normal_influence, contact_normal_influence_init, 32, scale: 1.0 }
 
-/// Effect: own coefficients that differ per loaded row, instead of the half-space: conformal contact, an inclination that varies along
-/// y. Nothing is assumed of them but that a pressure displaces its own element inwards. Memory and time of a product grow with
-/// my * my * mx.
+/// Effect: influence coefficients of your own that differ from loaded row to loaded row, instead of the half-space's: for conformal contact, or an
+/// inclination that varies along y. They need be neither symmetric nor positive. But a pressure must displace its own element inwards, and no
+/// coefficient (in the mean of both directions between two elements) may exceed the largest one of an element on itself. Memory and time of a product
+/// grow with my * my * mx.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_row_tables {
     /// Set by `contact_normal_row_tables_init`.
     pub struct_size: i64,
-    /// The tables cover offsets -cx..cx-1 in x; cx >= mx. Default 0: to be set.
+    /// The tables cover the offsets -cx to cx - 1 in x; cx >= mx. Default 0: to be set.
     pub cx: i32,
-    /// Number of tables, and rows of each: my. Default 0: to be set.
+    /// The number of tables, and of the rows of each table: my. Default 0: to be set.
     pub rows: i32,
-    /// `[rows][rows][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, my, my)`. `A_IJ = cf(ix - jx, iy, jy)`: the displacement of
-    /// element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read. Default
+    /// The tables, `[rows][rows][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, my, my)`. `A_IJ = cf(ix - jx, iy, jy)` is the displacement
+    /// of element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read. Default
     /// NULL: to be set.
     pub coefficients: *const f64,
-    /// Every coefficient is multiplied by this, positive; default 1.
+    /// A positive factor on every coefficient; default 1.
     pub scale: f64,
 }
 
 versioned! { contact_normal_row_tables, contact_normal_row_tables_init, 32, scale: 1.0 }
 
-/// Number of values in a table of coefficients.
+/// The number of values in a table over the offsets -cx to cx - 1 and -cy to cy - 1.
 pub(super) fn table_size(cx: usize, cy: usize) -> Result<usize, Refusal> {
     let size = cx.checked_mul(cy).and_then(|n| n.checked_mul(4)).filter(|n| *n <= isize::MAX as usize / 8);
     size.ok_or_else(|| Refusal::invalid(format!("cx * cy is {cx} * {cy}; no influence table is that large")))
@@ -86,12 +87,12 @@ impl contact_normal_row_tables {
         Ok(RowTables::scaled(cx, rows, values, self.scale, grid)?)
     }
 
-    /// cx, rows, and the number of values that are read.
+    /// cx, the number of rows, and the number of values that are read.
     fn size(&self, grid: &Grid) -> Result<(usize, usize, usize), Refusal> {
         self.size_on(Some(grid), "row_tables")
     }
 
-    /// cx, rows, and the number of values that are read, with the `name` of the tables in messages. Without a grid all are read.
+    /// cx, the number of rows, and the number of values that are read: all if `grid` is None. Messages call the tables `name`.
     pub(super) fn size_on(&self, grid: Option<&Grid>, name: &str) -> Result<(usize, usize, usize), Refusal> {
         let (cx, rows) = (count(&format!("{name}->cx"), self.cx)?, count(&format!("{name}->rows"), self.rows)?);
         // A table for another grid is refused, so that its coefficients are not read.

@@ -1,4 +1,4 @@
-//! `contact_normal_init`: the one export behind the `_init` of every struct.
+//! `contact_normal_init`: the exported function that the `_init` of every struct calls.
 
 use libc::c_void;
 
@@ -64,9 +64,9 @@ pub const CONTACT_NORMAL_KIND_WEAR: i32 = 28;
 /// `kind`: `contact_normal_worn`. Since 0.2.
 pub const CONTACT_NORMAL_KIND_WORN: i32 = 29;
 
-/// Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
-/// and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
-/// size of their own struct. No more than `size` bytes are written, and what this library does not know of them is 0. `to` NULL is ignored.
+/// Fills a struct of a `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
+/// and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`. Other programs call this function with
+/// the size of their own struct. It writes no more than `size` bytes, and 0 into members that this library does not know. `to` NULL is ignored.
 /// Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_init(kind: i32, to: *mut c_void, size: i64) {
@@ -85,7 +85,7 @@ macro_rules! kinds {
             unsafe {
                 match kind {
                     $($kind => structs::init::<$name>(to.cast(), size),)+
-                    // A kind of a newer header. Its struct of zeros asks for nothing; once a member is set, the scene refuses it.
+                    // A kind of a newer header. If the program attaches the struct to a member that this library does not know, calls refuse it.
                     _ => structs::init_unknown(to.cast(), size),
                 }
             }
@@ -135,7 +135,7 @@ mod tests {
     use super::*;
     use crate::ffi::structs::Versioned;
 
-    /// A newer program that leaves a member alone does not ask an older library for anything.
+    /// The defaults of members beyond the first size are 0: a newer program that does not set them asks nothing of an older library.
     pub(super) fn has_grown_by_zeros<T: Versioned>() {
         let defaults = T::defaults();
         // SAFETY: a Versioned is bytes.

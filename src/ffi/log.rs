@@ -1,4 +1,4 @@
-//! Log messages to a callback of the caller's.
+//! Log messages for a callback of the calling program.
 
 use std::cell::Cell;
 use std::ffi::CString;
@@ -12,18 +12,20 @@ use super::guard::guard;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED};
 use crate::threads::{is_worker, Shared};
 
-/// Log level: nothing.
+/// Log level: no messages.
 pub const CONTACT_NORMAL_LOG_OFF: i32 = 0;
 /// Log level: results that the caller should look at.
 pub const CONTACT_NORMAL_LOG_WARNING: i32 = 1;
 /// Log level: decisions of the library.
 pub const CONTACT_NORMAL_LOG_INFO: i32 = 2;
 
-/// Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, in its
-/// floating-point environment, with no lock held. A handle that is solving refuses to be used.
+/// A callback that receives log messages: a level, a message (valid during the call) and the user pointer. It is called on the thread that called
+/// the library, in the floating-point environment of that thread, with no lock held. The callback must not use a handle that is solving: such calls
+/// are refused.
 pub type contact_normal_log_callback =
     Option<unsafe extern "C" fn(level: i32, message: *const c_char, user: *mut c_void)>;
 
+/// The callback that receives the messages, and its pointer.
 #[derive(Clone, Copy)]
 struct Target {
     callback: contact_normal_log_callback,
@@ -40,7 +42,7 @@ thread_local! {
     static QUIET: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Runs `work` without log messages.
+/// Calls `work` without log messages.
 pub(super) fn quietly<R>(work: impl FnOnce() -> R) -> R {
     struct Restored(bool);
     impl Drop for Restored {
@@ -48,11 +50,12 @@ pub(super) fn quietly<R>(work: impl FnOnce() -> R) -> R {
             QUIET.set(self.0);
         }
     }
-    // Its drop ends the silence, even after a panic.
+    // Dropped at the end, even after a panic.
     let _restored = Restored(QUIET.replace(true));
     work()
 }
 
+/// The logger that calls the caller's callback.
 struct Forward;
 
 impl Log for Forward {
@@ -65,7 +68,7 @@ impl Log for Forward {
         if QUIET.get() || is_worker() {
             return;
         }
-        // A copy, so that the lock is not held during the call.
+        // The target is copied, so that the lock is not held during the call.
         let Some(target) = TARGET.lock().map(|target| *target) else { return };
         let level =
             if record.level() <= log::Level::Warn { CONTACT_NORMAL_LOG_WARNING } else { CONTACT_NORMAL_LOG_INFO };
@@ -78,8 +81,8 @@ impl Log for Forward {
     fn flush(&self) {}
 }
 
-/// Sends log messages up to `level` (CONTACT_NORMAL_LOG_...) to `callback`; NULL: none, as at the start. For the whole process.
-/// UNSUPPORTED when a Rust host has set a logger of its own: it gets them. Since 0.1.
+/// Sends the log messages of the whole process up to `level` (CONTACT_NORMAL_LOG_...) to `callback`. NULL, as at the start of the process: no
+/// messages. UNSUPPORTED: a program in Rust has set a logger already, which receives the messages. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_set_log(
     callback: contact_normal_log_callback,

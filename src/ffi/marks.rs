@@ -1,9 +1,14 @@
-//! Marks of the Fortran module. Its procedures that attach arrays and structures return no status. They write a mistake in their arguments as a
-//! negative number into the `struct_size` of the structure that they fill, and the next call that reads the structure reports it.
+//! Marks: mistakes that the Fortran module finds. The procedures of the module that attach arrays and structures return no status. They write a
+//! mistake in their arguments as a negative number, a mark, into the `struct_size` of the structure that they fill. The next call that reads the
+//! structure refuses it with the text of the mark.
+//!
+//! The absolute value of a mark has 16 bits [`MARK`], 8 bits for the number of the procedure, 8 bits for the kind of the mistake, and 32 bits for the
+//! number of the argument or for its value. Procedures and arguments count from 1.
 
-/// The upper 16 bits of a mark, with its sign turned; then 8 bits each of the procedure and the kind, and 32 bits of an argument or a value.
+/// The upper 16 bits of the absolute value of a mark.
 const MARK: i64 = 0x2C4D;
 
+// The kinds of mistakes.
 const WRONG_BODY: i64 = 1;
 const NOT_ASSOCIATED: i64 = 2;
 const WRONG_SHAPE: i64 = 3;
@@ -45,17 +50,17 @@ const PROCEDURES: [(&str, &str); 22] = [
     ("frictional_wear", "wear traction slip work depth passage worn pressure coefficients"),
 ];
 
-/// The text of a mark, if this is one.
+/// The text of a mark. None: the declared `struct_size` is no mark.
 pub fn read(declared: i64) -> Option<String> {
     let bits = declared.checked_neg()?;
     if bits >> 48 != MARK {
         return None;
     }
-    let place = |number: i64| usize::try_from(number).ok()?.checked_sub(1);
-    let (procedure, arguments) = PROCEDURES.get(place(bits >> 40 & 0xFF)?)?;
-    // The low 32 bits are an integer of Fortran.
+    let index = |number: i64| usize::try_from(number).ok()?.checked_sub(1);
+    let (procedure, arguments) = PROCEDURES.get(index(bits >> 40 & 0xFF)?)?;
+    // The low 32 bits are an integer of Fortran: the number of an argument, or the value of `body`.
     let about = bits as i32;
-    let argument = || arguments.split(' ').nth(place(i64::from(about))?);
+    let argument = || arguments.split(' ').nth(index(i64::from(about))?);
     let fault = match bits >> 32 & 0xFF {
         WRONG_BODY => format!("body is {about}; it must be 1 or 2"),
         NOT_ASSOCIATED => format!("{} is not associated (or not allocated)", argument()?),

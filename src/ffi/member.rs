@@ -1,4 +1,4 @@
-//! A struct of the ABI and its members, by name; `members.rs` lists them.
+//! Structs of the ABI and their members by name, with type and offset. `members.rs` lists them.
 
 use std::borrow::Cow;
 
@@ -12,18 +12,18 @@ pub(super) enum Kind {
     Int32,
     Int64,
     Double,
-    /// A pointer to a callback, a text or data that only the host can interpret.
+    /// A pointer to a callback, to a text, or to data that only the calling program can interpret.
     OfTheHost,
-    /// It points to numbers.
+    /// A pointer to numbers.
     Array,
-    /// It points to a struct of this name, or to many.
+    /// A pointer to one or more structs of this name.
     Structs(&'static str),
 }
 
-/// The types that members have in Rust.
+/// A Rust type that members have.
 pub(super) trait Typed {
     const KIND: Kind;
-    /// The number of values of an array; none: it is no array.
+    /// The number of values of an array within the struct. None: the member is a single value.
     const COUNT: Option<usize> = None;
 }
 
@@ -41,7 +41,7 @@ typed! {
     OfTheHost: *const c_char, *mut c_void;
 }
 
-/// Callbacks.
+// Callbacks.
 impl<F> Typed for Option<F> {
     const KIND: Kind = Kind::OfTheHost;
 }
@@ -63,30 +63,31 @@ impl<T: Typed, const N: usize> Typed for [T; N] {
 #[derive(Debug)]
 pub(super) struct Member {
     name: &'static str,
-    /// Bytes from the beginning of the struct.
-    at: usize,
+    /// The bytes from the beginning of the struct.
+    offset: usize,
     kind: Kind,
+    /// The number of values of an array within the struct. None: a single value.
     count: Option<usize>,
 }
 
 impl Member {
-    /// The member that a function finds in its struct.
-    pub const fn of<S, T: Typed>(name: &'static str, at: usize, _: fn(&S) -> &T) -> Member {
-        Member { name, at, kind: T::KIND, count: T::COUNT }
+    /// The member `name` at `offset`. The last argument, which returns the member of a struct, determines the type.
+    pub const fn of<S, T: Typed>(name: &'static str, offset: usize, _: fn(&S) -> &T) -> Member {
+        Member { name, offset, kind: T::KIND, count: T::COUNT }
     }
 
-    /// The place of its value, or those of the values of an array.
+    /// The place of the value, or of each value of an array.
     fn places(&self) -> impl Iterator<Item = Place> + '_ {
         (0..self.count.unwrap_or(1)).map(|k| Place {
             name: self.count.map_or(self.name.into(), |_| format!("{}[{k}]", self.name).into()),
-            at: self.at + k * self.kind.bytes(),
+            offset: self.offset + k * self.kind.bytes(),
             kind: self.kind,
         })
     }
 }
 
 impl Kind {
-    /// Bytes that a value takes.
+    /// The bytes that a value takes.
     pub fn bytes(self) -> usize {
         if self == Kind::Int32 {
             4
@@ -96,18 +97,21 @@ impl Kind {
     }
 }
 
-/// Where a value stands in a struct: its name ("normal.force", "coating[0]"), the bytes from the beginning of the struct, and its type.
+/// A single value in a struct.
 #[derive(Debug)]
 pub(super) struct Place {
+    /// The name of the value, as "normal.force" or "coating[0]".
     pub name: Cow<'static, str>,
-    pub at: usize,
+    /// The bytes from the beginning of the struct.
+    pub offset: usize,
+    /// The type of the value.
     pub kind: Kind,
 }
 
 impl Place {
-    /// The bytes from the beginning of the struct to its end.
+    /// The bytes from the beginning of the struct to the end of the value.
     pub fn end(&self) -> usize {
-        self.at + self.kind.bytes()
+        self.offset + self.kind.bytes()
     }
 }
 
@@ -119,13 +123,13 @@ pub(super) struct Struct {
 }
 
 impl Struct {
-    /// The places of the values of its members.
+    /// The places of all values in the struct.
     pub fn places(&self) -> impl Iterator<Item = Place> + '_ {
         self.members.iter().flat_map(Member::places)
     }
 }
 
-/// Constants of the ABI, each with its name without CONTACT_NORMAL_.
+/// Lists constants of the ABI, each with its name without CONTACT_NORMAL_.
 macro_rules! constants {
     ($($name:ident)*) => {
         &[$((stringify!($name).split_at("CONTACT_NORMAL_".len()).1, $name)),*]
@@ -133,7 +137,7 @@ macro_rules! constants {
 }
 pub(super) use constants;
 
-/// Structs, each with its members and those of structs within it.
+/// Lists structs with their members. A member of a struct within a struct is written `outer.inner`.
 macro_rules! structs {
     ($($struct:ident { $($member:ident $(. $inner:ident)*)* })*) => {
         &[$(Struct {

@@ -1,8 +1,8 @@
-//! The C ABI: translation only, no numerics. Each export goes through `guard.rs`.
+//! The C ABI. It translates arguments and results and has no numerics. Each exported function runs in the guard of `guard.rs`.
 
 #![allow(non_camel_case_types)]
-#![allow(clippy::doc_lazy_continuation)] // comments of members are those of the header
-#![allow(clippy::missing_safety_doc)] // the rules for all exports stand in docs/conventions.md
+#![allow(clippy::doc_lazy_continuation)] // cbindgen copies the doc comments to the header
+#![allow(clippy::missing_safety_doc)] // docs/conventions.md has the rules for all exported functions
 
 mod accuracy;
 mod adhesion;

@@ -1,4 +1,4 @@
-//! The outputs that the caller wants written: fields, a report, a ledger; and the initial guess, which is read.
+//! The outputs of a solve in the caller's memory: fields, a report and a ledger. The initial guess is read from the same fields.
 
 use std::mem::MaybeUninit;
 use std::slice::from_raw_parts_mut;
@@ -18,19 +18,22 @@ use crate::solver::{ActiveSet, Guess, InitialGuess, LedgerRow, Neglected, Option
 
 /// The caller's output structs, after a check.
 pub(super) struct Outputs {
+    /// A copy of the caller's `fields`.
     fields: contact_normal_fields,
+    /// The address of the caller's `fields`, or NULL.
     fields_at: *const contact_normal_fields,
+    /// The address of the caller's report, or NULL.
     report: *mut contact_normal_report,
     /// The contents of the caller's report before the call.
     given_report: Option<contact_normal_report>,
-    /// Its ledger, if there is room for one.
+    /// The rows of the ledger in the caller's report. None: the report has no room for rows.
     ledger: Option<Rows<contact_normal_ledger_row>>,
-    /// The effects that were left out of the scene.
+    /// The effects that the solve leaves out of the scene (`neglect_below`).
     pub neglected: Option<Neglected>,
 }
 
 impl Outputs {
-    /// NULL: not wanted.
+    /// Reads and checks the structs. NULL: not wanted.
     pub unsafe fn of(
         fields: *mut contact_normal_fields,
         report: *mut contact_normal_report,
@@ -61,12 +64,12 @@ impl Outputs {
         Ok(Outputs { fields: given_fields, fields_at: fields, report, given_report, ledger: rows, neglected: None })
     }
 
-    /// The caller's structs.
+    /// The addresses of the caller's structs.
     pub fn at(&self) -> (*mut contact_normal_fields, *mut contact_normal_report) {
         (self.fields_at.cast_mut(), self.report)
     }
 
-    /// Adds the outputs that are also read.
+    /// Marks the arrays that the call also reads.
     pub fn add_read(&self, regions: &mut Regions, options: &Options) {
         let given = options.initial_guess == InitialGuess::Given;
         if given {
@@ -77,7 +80,7 @@ impl Outputs {
         }
     }
 
-    /// Refuses arrays that are read, if they are missing or have invalid values.
+    /// Refuses the call if an array that it has to read is missing, or if a FIXED contact area is empty.
     pub fn check_inputs(&self, options: &Options, n: usize) -> Result<(), Refusal> {
         let fixed = options.active_set == ActiveSet::Fixed;
         let given = options.initial_guess == InitialGuess::Given;
@@ -96,13 +99,13 @@ impl Outputs {
         Ok(())
     }
 
-    /// The options, with estimates if the report needs them: after a start from nothing, or when there is room for a ledger.
+    /// The options of the core. Errors are estimated if there is a report, and no initial guess or room for a ledger.
     pub fn options(&self, options: &Options) -> Options {
-        let from_nothing = options.initial_guess == InitialGuess::None;
-        Options { estimates: self.given_report.is_some() && (from_nothing || self.ledger_capacity() > 0), ..*options }
+        let without_guess = options.initial_guess == InitialGuess::None;
+        Options { estimates: self.given_report.is_some() && (without_guess || self.ledger_capacity() > 0), ..*options }
     }
 
-    /// The caller's initial guess: pressures and contact area, copied.
+    /// Copies the caller's initial guess, pressures and contact area, to `buffers`. None: the solve reads neither.
     pub fn guess<'a>(
         &self,
         options: &Options,
@@ -160,7 +163,7 @@ impl Outputs {
         Ok(())
     }
 
-    /// Writes the caller's arrays. `is_fixed`: the contact area is the caller's, with codes of its own, and is not written.
+    /// Writes the caller's arrays. If the contact area `is_fixed`, the array `contact` is not written and keeps the caller's codes.
     pub fn write_fields(&self, solver: &Solver, is_fixed: bool) {
         let state = solver.state();
         let n = state.p.len();
@@ -179,10 +182,10 @@ impl Outputs {
         self.write_adhesion(solver);
     }
 
-    /// Writes the two parts of the pressures: without adhesion all of them are contact pressures.
+    /// Writes contact pressure and attraction, the two parts of the pressure. Without adhesion all pressure is contact pressure.
     fn write_adhesion(&self, solver: &Solver) {
         let n = solver.state().p.len();
-        // SAFETY (both): not null: room for one value per element, as above, with whatever it holds.
+        // SAFETY (both): not null: room for one value per element, as above, which may be uninitialised.
         let room = |to: *mut f64| unsafe { to.cast::<MaybeUninit<f64>>().as_mut().map(|to| from_raw_parts_mut(to, n)) };
         if let Some(to) = room(self.fields.contact_pressure) {
             solver.write_part(to, |(contact_pressure, _)| contact_pressure);
@@ -211,12 +214,12 @@ impl Outputs {
         }
     }
 
-    /// The warning of a law of friction; nothing where no report is wanted.
+    /// The warning about a law of friction; 0 if no report is wanted.
     pub fn warnings_of_law(&self, slope: Option<f64>) -> i32 {
         self.given_report.map_or(0, |_| warnings::of_law(slope))
     }
 
-    /// The warnings of a result; nothing where no report is wanted.
+    /// The warnings about a result; 0 if no report is wanted.
     pub fn warnings(&self, scene: &Scene<'_>, options: &Options, report: &Report, state: &State) -> i32 {
         self.given_report.map_or(0, |_| warnings::of(scene, options, report, state))
     }
@@ -238,13 +241,13 @@ impl Outputs {
         unsafe { structs::write(self.report, &report) }
     }
 
-    /// Rows that the caller's ledger has room for.
+    /// The number of rows for which the caller's ledger has room.
     fn ledger_capacity(&self) -> usize {
         self.given_report.map_or(0, |report| report.ledger_capacity as usize)
     }
 }
 
-/// Writes a value for each of n elements. NULL: they are not wanted.
+/// Writes `value(i)` for each of n elements. NULL: not wanted.
 unsafe fn write_each<A>(to: *mut A, n: usize, value: impl Fn(usize) -> A) {
     if !to.is_null() {
         // SAFETY: not null: room for n values, by the caller.
@@ -252,7 +255,7 @@ unsafe fn write_each<A>(to: *mut A, n: usize, value: impl Fn(usize) -> A) {
     }
 }
 
-/// Memory for initial guesses and addresses, kept by a handle from one solve to the next.
+/// Memory for an initial guess and for the addresses of arrays. A handle keeps it from solve to solve.
 #[derive(Default)]
 pub(super) struct Buffers {
     pressure: Vec<f64>,

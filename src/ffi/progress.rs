@@ -1,4 +1,4 @@
-//! `contact_normal_progress`: the state that the progress callback gets.
+//! `contact_normal_progress`: the state of a solve, for the progress callback.
 
 use super::ledger::copy;
 use crate::solver::Progress;
@@ -7,19 +7,20 @@ use crate::solver::Progress;
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct contact_normal_progress {
-    /// Size of this struct in the library.
+    /// The size of this struct in the library.
     pub struct_size: i64,
-    /// Elements in x of the grid that the cycle was on.
+    /// Elements in x of the grid of the last cycle.
     pub mx: i32,
-    /// Elements in y.
+    /// Elements in y of that grid.
     pub my: i32,
-    /// Cycles on that grid so far. Iterations of the tangential problem, and with adhesion those on coarser grids, are told but not counted.
+    /// Cycles on that grid so far. The callback is also called after iterations of the tangential problem and, with adhesion, of coarser grids;
+    /// these do not count.
     pub cycles: i64,
-    /// Elements that changed sides in the last cycle.
+    /// Elements that the last cycle moved between contact area, exterior area and pressure limit.
     pub active_set_changes: i64,
     /// Seconds since the solve began.
     pub seconds: f64,
-    /// Work units since then.
+    /// Work units since the solve began.
     pub work_units: f64,
     /// rms over C of the last change of p.
     pub update: f64,

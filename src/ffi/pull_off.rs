@@ -1,4 +1,4 @@
-//! `contact_normal_pull_off`: the search for the least force.
+//! `contact_normal_pull_off`: the search for the pull-off force, the strongest pull of bodies with adhesion.
 
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
@@ -12,10 +12,11 @@ use super::status::contact_normal_status;
 use super::watcher::Watcher;
 use crate::solver::Solver;
 
-/// Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until nothing is in contact, and so it does from
-/// bodies that are pressed together. The result is the state of the least force on these ways (`report->normal.force`). A load to begin with that
-/// is safe is a force of 0. The first way may take three times `max_cycles`, and each further way `max_cycles`, or four times the
-/// cycles of the first and 500 if that is more. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
+/// Searches the pull-off force of a scene with adhesion. The call decreases the approach until nothing is in contact, on several paths: from the
+/// state of the scene's load, and from bodies that are pressed together. The result is the state of the strongest pull on these paths; its force, in
+/// `report->normal.force`, is the smallest one, negative. A force of 0 is a load with which the search can always begin. The first path may take
+/// three times `max_cycles`. Each further path may take `max_cycles` or, if that is more, 500 plus four times the cycles of the first path. `options`
+/// NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_pull_off(
     scene: *const contact_normal_scene,
@@ -33,12 +34,12 @@ pub unsafe extern "C" fn contact_normal_pull_off(
         let Request { scene, options, outputs } = request?;
         let (mut solver, _) = Solver::for_scene(&scene, &options.options)?;
         let watcher = Watcher::of(&options);
-        let (stop, report) = solver.pull_off(&scene, &options.options, watcher.callback(&mut watcher.told()))?;
+        let (outcome, report) = solver.pull_off(&scene, &options.options, watcher.callback(&mut watcher.told()))?;
         let warnings = outputs.warnings(&scene, &options.options, &report, solver.state());
         outputs.write_fields(&solver, false);
         outputs.write_report(&report, solver.ledger(), warnings)?;
-        let message = || explain(stop, &report, options.options.method, Some(solver.state()));
-        watcher.conclusion(Conclusion { warnings, ..Conclusion::of(stop, message) }).conclude()
+        let message = || explain(outcome, &report, options.options.method, Some(solver.state()));
+        watcher.conclusion(Conclusion { warnings, ..Conclusion::of(outcome, message) }).conclude()
     };
     // SAFETY: as above.
     unsafe { recorded("contact_normal_pull_off", options, arguments, solve) }

@@ -1,4 +1,4 @@
-//! `contact_normal_quantities`: quantities of a scene, grid by grid, with errors.
+//! `contact_normal_quantities`: quantities of a scene on several grids, with estimated errors.
 
 use super::arguments::{count, required, Regions};
 use super::conclusion::Conclusion;
@@ -13,21 +13,21 @@ use crate::solver::{self, Lack, Quantity, QuantityRow};
 
 /// `lack`: nothing is missing.
 pub const CONTACT_NORMAL_LACK_NONE: i32 = 0;
-/// `lack`: there is no value, since the scene has no friction.
+/// `lack`: there is no value, because the scene has no friction.
 pub const CONTACT_NORMAL_LACK_NO_FRICTION: i32 = 1;
-/// `lack`: there is no value, since the scene prescribes it.
+/// `lack`: there is no value, because the scene prescribes the quantity.
 pub const CONTACT_NORMAL_LACK_PRESCRIBED: i32 = 2;
-/// `lack`: there is no value, since an effect of the scene stands against it: stresses are those of half-spaces.
+/// `lack`: there is no value, because an effect of the scene excludes it: stresses are those of half-spaces.
 pub const CONTACT_NORMAL_LACK_EFFECT: i32 = 3;
-/// `lack`: there is no value, since there is no contact; or no error of a value of 0, since the grid is too coarse to touch.
+/// `lack`: there is no value, because there is no contact; or a value of 0 has no error, because on the coarse grid nothing touches.
 pub const CONTACT_NORMAL_LACK_NO_CONTACT: i32 = 4;
-/// `lack`: there is no error, since the value grows from grid to grid.
+/// `lack`: there is no error, because the value grows from grid to grid.
 pub const CONTACT_NORMAL_LACK_SINGULAR: i32 = 5;
-/// `lack`: there is no error, since one grid alone was solved.
+/// `lack`: there is no error, because only one grid was solved.
 pub const CONTACT_NORMAL_LACK_ONE_GRID: i32 = 6;
 /// `lack`: a grid was not solved.
 pub const CONTACT_NORMAL_LACK_UNSOLVED: i32 = 7;
-/// `lack`: there is no error, since the changes from grid to grid do not fall yet: one more grid tells whether the value converges.
+/// `lack`: there is no error, because the changes from grid to grid do not decrease yet. One more grid shows whether the value converges.
 pub const CONTACT_NORMAL_LACK_UNSETTLED: i32 = 8;
 const _: () = assert!(Lack::NoFriction as i32 == CONTACT_NORMAL_LACK_NO_FRICTION);
 const _: () = assert!(Lack::Prescribed as i32 == CONTACT_NORMAL_LACK_PRESCRIBED);
@@ -38,7 +38,7 @@ const _: () = assert!(Lack::OneGrid as i32 == CONTACT_NORMAL_LACK_ONE_GRID);
 const _: () = assert!(Lack::Unsolved as i32 == CONTACT_NORMAL_LACK_UNSOLVED);
 const _: () = assert!(Lack::Unsettled as i32 == CONTACT_NORMAL_LACK_UNSETTLED);
 
-/// A quantity on one grid.
+/// The value of a quantity on one grid, and its error.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_quantity_row {
@@ -48,17 +48,17 @@ pub struct contact_normal_quantity_row {
     pub quantity: i32,
     /// CONTACT_NORMAL_LACK_...: why there is no value or no error.
     pub lack: i32,
-    /// Elements in x.
+    /// Elements in x of the grid.
     pub mx: i32,
-    /// Elements in y.
+    /// Elements in y of the grid.
     pub my: i32,
-    /// The value; NaN: there is none.
+    /// The value of the quantity; NaN: there is no value.
     pub value: f64,
-    /// Its estimated error, in its own unit; < 0: not known.
+    /// The estimated error of the value, in the same unit; < 0: not known.
     pub error: f64,
-    /// Seconds of set-up and solve on this grid, the same for all quantities; stresses and stiffness not included.
+    /// Seconds of set-up and solve on this grid, without stresses and stiffness; the same for all quantities.
     pub seconds: f64,
-    /// Products on this grid, in work units: one product of the grid is one.
+    /// Work units of the solve on this grid. The unit is one product on this grid.
     pub work_units: f64,
 }
 
@@ -80,22 +80,24 @@ impl From<&QuantityRow> for contact_normal_quantity_row {
     }
 }
 
-/// The quantities of an array of numbers.
+/// The quantities with these numbers.
 pub(super) fn quantities_of(numbers: &[i32]) -> Result<Vec<Quantity>, Refusal> {
-    let of = |(i, number): (usize, &i32)| quantity_of(&format!("quantities[{i}]"), *number);
-    numbers.iter().enumerate().map(of).collect()
+    let quantity = |(i, number): (usize, &i32)| quantity_of(&format!("quantities[{i}]"), *number);
+    numbers.iter().enumerate().map(quantity).collect()
 }
 
-/// The limit on `coarser`: the coarsest grid has 1/4096 of the elements in each direction.
+/// The largest `coarser`. The coarsest grid then has 1/4096 of the elements in each direction.
 const MOST_COARSER: i32 = 12;
 
-/// Solves the scene on its grid and on `coarser` grids (0 to 12), each with half the elements of the next in both directions and solved from
-/// nothing, and writes `n` rows for each grid, coarsest first: `rows[k n + i]` is that of `quantities[i]` (CONTACT_NORMAL_QUANTITY_...) on grid
-/// k. There are `(coarser + 1) n` rows; where a grid of few elements cannot be halved any more, fewer grids, and `*written` (NULL: not wanted)
-/// has the number of rows. Errors of force, largest pressure and area are the estimates of the report; errors of all others follow from the grids
-/// before, so that the coarsest has none. Where nothing touches on the scene's own grid, values of 0 have the error 0. Arrays of one value per
-/// element have their means on coarser grids. ITERATION_LIMIT, STAGNATED: the scene's own grid was not solved. UNSUPPORTED: own coefficients,
-/// tractions kept by a handle, FIXED contact. Since 0.2.
+/// Solves the scene on its own grid and on `coarser` coarser grids (0 to 12). Each grid has half the elements of the next one in both directions, and
+/// each solve has no initial guess. The call writes `n` rows for each grid, coarsest first: `rows[k n + i]` has `quantities[i]`
+/// (CONTACT_NORMAL_QUANTITY_...) on grid k. There are `(coarser + 1) n` rows, or fewer if a grid of few elements cannot be halved any more.
+/// `*written` (NULL: not wanted) is the number of rows.
+///
+/// Errors of force, largest pressure and area are the estimates of the report. Errors of all other quantities follow from the coarser grids, so the
+/// coarsest grid has none. If nothing touches on the scene's own grid, values of 0 have the error 0. Arrays of one value per element are averaged on
+/// coarser grids. ITERATION_LIMIT, STAGNATED: the scene's own grid was not solved. UNSUPPORTED: influence coefficients of your own, tractions kept by
+/// a handle, FIXED contact. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_quantities(
     scene: *const contact_normal_scene,
@@ -129,13 +131,13 @@ pub unsafe extern "C" fn contact_normal_quantities(
         let watcher = Watcher::of(&translated);
         let told = &mut watcher.told();
         let progress = watcher.callback(told);
-        let (stop, found) = solver::quantities(&scene, &translated.options, &wanted, coarser as usize, progress)?;
+        let (outcome, computed) = solver::quantities(&scene, &translated.options, &wanted, coarser as usize, progress)?;
         // SAFETY: the caller has room for all rows.
-        found.iter().enumerate().for_each(|(i, row)| unsafe { to.write(i, &row.into()) });
+        computed.iter().enumerate().for_each(|(i, row)| unsafe { to.write(i, &row.into()) });
         if !written.is_null() {
-            // SAFETY: not NULL: an integer of the caller's.
-            unsafe { written.write(found.len() as i32) };
+            // SAFETY: not NULL, so an integer of the caller.
+            unsafe { written.write(computed.len() as i32) };
         }
-        watcher.conclusion(Conclusion::of(stop, || why(stop).into())).conclude()
+        watcher.conclusion(Conclusion::of(outcome, || why(outcome).into())).conclude()
     })
 }

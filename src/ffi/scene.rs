@@ -1,4 +1,4 @@
-//! `contact_normal_scene`.
+//! `contact_normal_scene`, and its translation to a [`Scene`].
 
 use super::adhesion::contact_normal_adhesion;
 use super::arguments::{self, add, Regions};
@@ -15,15 +15,15 @@ use crate::grid::Grid;
 use crate::memory::copied;
 use crate::scene::{Bodies, Coating, Load, Scene};
 
-/// `load`: the one of `approach` and `force` that is set. Both or neither are refused.
+/// `load`: whichever of `approach` and `force` is set. It is refused if both are set, or none.
 pub const CONTACT_NORMAL_PRESCRIBED_UNSET: i32 = 0;
-/// `load`: the approach of the bodies is given.
+/// `load`: the approach of the bodies is prescribed.
 pub const CONTACT_NORMAL_PRESCRIBED_APPROACH: i32 = 1;
-/// `load`: the normal force is given, the approach is found.
+/// `load`: the normal force is prescribed, and the approach is computed.
 pub const CONTACT_NORMAL_PRESCRIBED_FORCE: i32 = 2;
 
 /// The scene to simulate: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
-/// system of units.
+/// system of units may be used.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_scene {
@@ -33,49 +33,52 @@ pub struct contact_normal_scene {
     pub mx: i32,
     /// Elements in y, >= 1; default 0: to be set.
     pub my: i32,
-    /// Element size in x: a length, positive; default 0: to be set.
+    /// Element size in x, a positive length; default 0: to be set.
     pub dx: f64,
-    /// Element size in y; default 0: to be set.
+    /// Element size in y, a positive length; default 0: to be set.
     pub dy: f64,
-    /// h, the gap between the surfaces before they deform, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
+    /// The undeformed distance h, the gap between the surfaces before they deform, `[my][mx]`, x fastest, a length. +infinity: there is no surface,
+    /// and the element stays exterior. Default NULL: to be set.
     pub undeformed_distance: *const f64,
-    /// G of the two bodies: a pressure, positive; +infinity: rigid (one surface at most, below a coating both). Default 0: to be set.
+    /// The shear moduli G of both bodies, positive pressures; +infinity: rigid (one surface at most; both bodies if a coating covers one). Default 0:
+    /// to be set.
     pub shear_modulus: [f64; 2],
-    /// nu of the two bodies, in (-1, 0.5]; default 0.
+    /// The Poisson ratios nu of both bodies, in (-1, 0.5]; default 0.
     pub poisson_ratio: [f64; 2],
-    /// CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE: that one is read, the other is not. Default UNSET: the one that is set.
+    /// CONTACT_NORMAL_PRESCRIBED_APPROACH: only `approach` is read. _FORCE: only `force` is read. Default UNSET: the one that is set.
     pub load: i32,
     /// Always 0.
     pub reserved: i32,
-    /// Prescribed approach (indentation, penetration): a length. Default NaN: not set.
+    /// The prescribed approach (indentation, penetration), a length. Default NaN: not set.
     pub approach: f64,
-    /// Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED or with adhesion also negative. Default NaN: not set.
+    /// The prescribed force, the sum of p dx dy, >= 0; with active_set FIXED or with adhesion it may be negative. Default NaN: not set.
     pub force: f64,
-    /// Effect, or NULL (default): own coefficients instead of the half-space. The elastic constants are then not used.
+    /// Effect, or NULL (default): influence coefficients of your own instead of the half-space's. The elastic constants are then not used.
     pub influence: *const contact_normal_influence,
-    /// Effect, or NULL (default): a thin compliant layer.
+    /// Effect, or NULL (default): a thin compliant layer between the bodies.
     pub layer: *const contact_normal_layer,
     /// Effect, or NULL (default): pressures do not exceed a limit.
     pub pressure_limit: *const contact_normal_pressure_limit,
-    /// Effect, or NULL (default): the scene repeats itself.
+    /// Effect, or NULL (default): the scene is periodic in x, in y or in both.
     pub period: *const contact_normal_period,
-    /// Effect, or NULL (default): several contact patches, whose interaction is scaled.
+    /// Effect, or NULL (default): several contact patches, with factors on the influence of each patch on the others.
     pub patches: *const contact_normal_patches,
-    /// Effect, or NULL (default): own coefficients, one table per loaded row. The elastic constants are then not used.
+    /// Effect, or NULL (default): influence coefficients of your own, one table per loaded row. The elastic constants are then not used.
     pub row_tables: *const contact_normal_row_tables,
-    /// Effect, or NULL (default): a coating on body 1 (`coating[0]`), on body 2. The elastic constants are then those of the bodies below.
+    /// Effect, or NULL (default): a coating on body 1 (`coating[0]`) and on body 2 (`coating[1]`). The elastic constants of the scene are then those
+    /// of the body below the coating.
     pub coating: [*const contact_normal_coating; 2],
     /// Effect, or NULL (default): friction between the bodies.
     pub friction: *const contact_normal_friction,
     /// Effect, or NULL (default): attraction between the bodies.
     pub adhesion: *const contact_normal_adhesion,
-    /// Effect, or NULL (default): bodies that relax, and a step of time of them.
+    /// Effect, or NULL (default): viscoelastic bodies, and a step in time.
     pub visco: *const contact_normal_visco,
 }
 
 versioned! { contact_normal_scene, contact_normal_scene_init, 168, approach: f64::NAN, force: f64::NAN }
 
-/// The load from the constants and values of the C ABI.
+/// The load that the constant `load` selects of `approach` and `force`. Refuses UNSET.
 pub(super) fn load_of(load: i32, approach: f64, force: f64) -> Result<Load, Refusal> {
     match load {
         CONTACT_NORMAL_PRESCRIBED_APPROACH => Ok(Load::Approach(approach)),
@@ -84,7 +87,7 @@ pub(super) fn load_of(load: i32, approach: f64, force: f64) -> Result<Load, Refu
     }
 }
 
-/// The load of a scene: the one that `load` names or, where it names none, the one that is set.
+/// The load of a scene: the one that `load` selects or, if `load` is UNSET, the one that is set.
 fn load_of_scene(scene: &contact_normal_scene) -> Result<Load, Refusal> {
     let (approach, force) = (scene.approach, scene.force);
     if scene.load != CONTACT_NORMAL_PRESCRIBED_UNSET {
@@ -103,7 +106,7 @@ fn load_of_scene(scene: &contact_normal_scene) -> Result<Load, Refusal> {
     }
 }
 
-/// A scene and the effects that it names, in the caller's form. Their arrays are not read yet.
+/// Copies of the caller's structs of a scene: the scene itself, and the effects to which it points. The arrays are not read yet.
 pub(super) struct Named {
     scene: contact_normal_scene,
     grid: Grid,
@@ -120,6 +123,7 @@ pub(super) struct Named {
 }
 
 impl Named {
+    /// Reads the structs of a scene.
     pub unsafe fn read(scene: *const contact_normal_scene) -> Result<Named, Refusal> {
         // SAFETY (all): NULL or structs that declare their size, by the conventions of the ABI.
         unsafe {
@@ -145,7 +149,7 @@ impl Named {
         }
     }
 
-    /// A scene for a call that uses no load, which need not be set.
+    /// For a call that does not use the load: if no load is set, sets an approach of 0.
     pub fn load_or_none(mut self) -> Named {
         let scene = &mut self.scene;
         if scene.load == CONTACT_NORMAL_PRESCRIBED_UNSET && scene.approach.is_nan() && scene.force.is_nan() {
@@ -154,21 +158,25 @@ impl Named {
         self
     }
 
-    /// Elements of the grid.
+    /// The number of elements of the grid.
     pub fn len(&self) -> usize {
         self.grid.len()
     }
 
-    /// Adds the memory that is read of the scene at `at`.
-    pub fn add_to(&self, regions: &mut Regions, at: *const contact_normal_scene) -> Result<(), Refusal> {
+    /// Adds the memory that a call reads of the scene at `address`.
+    pub fn add_to(&self, regions: &mut Regions, address: *const contact_normal_scene) -> Result<(), Refusal> {
         regions.input("undeformed_distance", self.scene.undeformed_distance, self.grid.len())?;
-        self.add_without_distance(regions, at)
+        self.add_without_distance(regions, address)
     }
 
-    /// [`add_to`](Self::add_to) of a call that takes the undeformed distance from elsewhere.
-    pub fn add_without_distance(&self, regions: &mut Regions, at: *const contact_normal_scene) -> Result<(), Refusal> {
+    /// As [`add_to`](Self::add_to), for a call that does not read the undeformed distance of the scene.
+    pub fn add_without_distance(
+        &self,
+        regions: &mut Regions,
+        address: *const contact_normal_scene,
+    ) -> Result<(), Refusal> {
         let (scene, grid) = (&self.scene, &self.grid);
-        regions.input_struct(at, scene)?;
+        regions.input_struct(address, scene)?;
         add(regions, grid, scene.influence, &self.influence)?;
         add(regions, grid, scene.layer, &self.layer)?;
         add(regions, grid, scene.pressure_limit, &self.pressure_limit)?;
@@ -188,36 +196,38 @@ impl Named {
         Ok(copied(unsafe { self.distance()? }, "undeformed distances")?)
     }
 
+    /// The caller's undeformed distance.
     unsafe fn distance<'a>(&self) -> Result<&'a [f64], Refusal> {
         let name = "scene->undeformed_distance";
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
         unsafe { arguments::required(name, self.scene.undeformed_distance, self.grid.len()) }
     }
 
-    /// The scene, which the core checks. The caller's arrays must live as long as it is used.
+    /// Translates the scene. The core checks its values. The caller's arrays must live as long as the result is used.
     pub unsafe fn translate<'a>(&self) -> Result<Scene<'a>, Refusal> {
         // SAFETY: by the caller.
         unsafe { self.with_distance(self.distance()?) }
     }
 
-    /// [`translate`](Self::translate) with another undeformed distance.
+    /// As [`translate`](Self::translate), with another undeformed distance.
     pub unsafe fn with_distance<'a>(&self, undeformed_distance: &'a [f64]) -> Result<Scene<'a>, Refusal> {
         let load = load_of_scene(&self.scene)?;
         // SAFETY: by the caller.
         unsafe { self.with_load(undeformed_distance, load) }
     }
 
-    /// The scene of given pressures. It has no undeformed distance, and its load is not read.
+    /// As [`translate`](Self::translate), for given pressures: neither the undeformed distance nor the load is read.
     pub unsafe fn without_load<'a>(&self) -> Result<Scene<'a>, Refusal> {
         // SAFETY: by the caller.
         unsafe { self.with_load(&[], Load::Approach(0.0)) }
     }
 
-    /// Whether there is an undeformed distance.
+    /// Whether the undeformed distance is given.
     pub fn has_distance(&self) -> bool {
         !self.scene.undeformed_distance.is_null()
     }
 
+    /// As [`translate`](Self::translate), with another undeformed distance and another load.
     unsafe fn with_load<'a>(&self, undeformed_distance: &'a [f64], load: Load) -> Result<Scene<'a>, Refusal> {
         let (scene, grid) = (&self.scene, &self.grid);
         arguments::reserved("scene->reserved", scene.reserved)?;

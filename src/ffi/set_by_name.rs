@@ -1,4 +1,4 @@
-//! Options and constants by name, for hosts that read them from files: `contact_normal_set_option`, `contact_normal_constant`.
+//! Options and constants by name, for programs that read them from files: `contact_normal_set_option`, `contact_normal_constant`.
 
 use std::ffi::CStr;
 
@@ -11,10 +11,11 @@ use super::options::{contact_normal_cycle, contact_normal_options};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, Versioned};
 
-/// Sets the option of this `name` to the `value` of a text: "tolerance" to "1e-8", "method" to "PROJECTED_CG" (or "METHOD_PROJECTED_CG", or
-/// "4"). Upper and lower case are the same, blanks around do not matter, and numbers may be written as in Fortran, "1d-8". For hosts that
-/// read options from a file. INVALID_ARGUMENT: there is no such option, or the text is no value of it; the message has similar names, or all.
-/// The call that uses a number checks its range. Callbacks, `cycle`, `stop` and `dump` are set by the program. Since 0.2.
+/// Sets the option `name` to the `value` that a text has: "tolerance" to "1e-8", "method" to "PROJECTED_CG" (or "METHOD_PROJECTED_CG", or
+/// "4"). This is for programs that read options from a file. Upper and lower case are the same, blanks around a text do not matter, and numbers may
+/// be written as in Fortran, "1d-8". INVALID_ARGUMENT: there is no such option, or the text is not a value of the option. The message lists similar
+/// names, or all names. The range of a number is checked by the call that uses the options. A text cannot set callbacks, `cycle`, `stop` and `dump`.
+/// Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_set_option(
     options: *mut contact_normal_options,
@@ -25,7 +26,7 @@ pub unsafe extern "C" fn contact_normal_set_option(
     guard(|| unsafe { set("options", options, name, value) })
 }
 
-/// The same of a cycle: "smoother" to "RED_BLACK", "relaxation" to "0.9". Since 0.2.
+/// As `contact_normal_set_option`, for a member of a cycle: "smoother" to "RED_BLACK", "relaxation" to "0.9". Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_set_cycle_option(
     cycle: *mut contact_normal_cycle,
@@ -36,8 +37,8 @@ pub unsafe extern "C" fn contact_normal_set_cycle_option(
     guard(|| unsafe { set("cycle", cycle, name, value) })
 }
 
-/// Writes the value of the constant that is called `name`, with or without CONTACT_NORMAL_, in upper or lower case: of "METHOD_NORM" 1.
-/// INVALID_ARGUMENT: there is none; the message says which are called nearly so. Since 0.2.
+/// Writes the value of the constant `name`, which may be written without CONTACT_NORMAL_, and in upper or lower case: 1 for "METHOD_NORM".
+/// INVALID_ARGUMENT: there is no such constant; the message lists similar names. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_constant(name: *const c_char, value: *mut i32) -> contact_normal_status {
     guard(|| {
@@ -47,20 +48,21 @@ pub unsafe extern "C" fn contact_normal_constant(name: *const c_char, value: *mu
             return Err(Refusal::null("value"));
         }
         let found = CONSTANTS.iter().find(|(known, _)| known.eq_ignore_ascii_case(without_prefix(&name)));
-        let there_are = || said(without_prefix(&name), CONSTANTS.iter().map(|(known, _)| *known));
-        let found = found.ok_or_else(|| Refusal::invalid(format!("there is no constant {name}: {}", there_are())))?;
-        // SAFETY: not NULL: room for a value.
-        unsafe { value.write(found.1) };
+        let advice = || similar(without_prefix(&name), CONSTANTS.iter().map(|(known, _)| *known));
+        let (_, number) =
+            found.ok_or_else(|| Refusal::invalid(format!("there is no constant {name}: {}", advice())))?;
+        // SAFETY: not NULL, so room for a value.
+        unsafe { value.write(*number) };
         Ok(CONTACT_NORMAL_OK)
     })
 }
 
-/// A text of the caller's, without blanks around it.
+/// A copy of the caller's text, without the blanks around it. NULL is refused with the `name` of the argument.
 unsafe fn text(name: &str, from: *const c_char) -> Result<String, Refusal> {
     if from.is_null() {
         return Err(Refusal::null(name));
     }
-    // SAFETY: not NULL: by the caller.
+    // SAFETY: not NULL, and a text that ends with 0, by the caller.
     Ok(unsafe { CStr::from_ptr(from) }.to_string_lossy().trim().to_owned())
 }
 
@@ -72,12 +74,13 @@ fn without_prefix(name: &str) -> &str {
     }
 }
 
-/// Members that a text can set.
+/// Whether a text can set this member.
 fn can_be_set(member: &Place) -> bool {
     let is_number = matches!(member.kind, Kind::Int32 | Kind::Int64 | Kind::Double);
     is_number && !["struct_size", "reserved"].contains(&&*member.name)
 }
 
+/// Sets the member `name` of the struct `to`, which messages call `called`, to the `value` of a text.
 unsafe fn set<T: Versioned>(
     called: &str,
     to: *mut T,
@@ -95,30 +98,31 @@ unsafe fn set<T: Versioned>(
         Some(member) => {
             return Err(Refusal::invalid(format!("{} is not set by a text: {}", member.name, all(names()))))
         }
-        None => return Err(Refusal::invalid(format!("there is no option {name}: {}", said(&name, names())))),
+        None => return Err(Refusal::invalid(format!("there is no option {name}: {}", similar(&name, names())))),
     };
     if member.end() > size {
         return Err(Refusal::invalid(format!("{name} is an option that the header of this program does not have")));
     }
     // SAFETY: the caller's struct has this member, of this kind; any bytes are a value.
     unsafe {
-        let at = to.cast::<u8>().add(member.at);
+        let address = to.cast::<u8>().add(member.offset);
         match member.kind {
-            Kind::Double => at.cast::<f64>().write_unaligned(double(&member.name, &value)?),
-            Kind::Int64 => at.cast::<i64>().write_unaligned(integer(&member.name, &value)?.into()),
-            _ => at.cast::<i32>().write_unaligned(integer(&member.name, &value)?),
+            Kind::Double => address.cast::<f64>().write_unaligned(double(&member.name, &value)?),
+            Kind::Int64 => address.cast::<i64>().write_unaligned(integer(&member.name, &value)?.into()),
+            _ => address.cast::<i32>().write_unaligned(integer(&member.name, &value)?),
         }
     }
     Ok(CONTACT_NORMAL_OK)
 }
 
+/// The number that a text has. The exponent may be written with d, as in Fortran.
 fn double(name: &str, value: &str) -> Result<f64, Refusal> {
     let refuse = |_| Refusal::invalid(format!("{name} is \"{value}\"; it must be a number"));
     // "inf" and "nan" contain no d.
     value.replace(['d', 'D'], "e").parse().map_err(refuse)
 }
 
-/// A number, or the constant of this name that the option may have.
+/// The whole number that a text has, or the value of the constant that the text names, of those that the option `name` may have.
 fn integer(name: &str, value: &str) -> Result<i32, Refusal> {
     if let Ok(number) = value.parse() {
         return Ok(number);
@@ -130,7 +134,7 @@ fn integer(name: &str, value: &str) -> Result<i32, Refusal> {
     let found = of_option().find(|(known, _)| *known == short).map(|(_, number)| number);
     found.ok_or_else(|| {
         let rule = match of_option().next() {
-            Some(_) => said(short, of_option().map(|(known, _)| known)),
+            Some(_) => similar(short, of_option().map(|(known, _)| known)),
             None => "it must be a whole number".into(),
         };
         Refusal::invalid(format!("{name} is \"{value}\"; {rule}"))
@@ -141,11 +145,11 @@ fn all<'a>(names: impl Iterator<Item = &'a str>) -> String {
     format!("there are {}", names.collect::<Vec<_>>().join(", "))
 }
 
-/// A message lists all names if there are no more than these.
+/// A message lists all names if there are at most this many.
 const FEW: usize = 20;
 
-/// Lists the names; of many only those similar to `name`.
-fn said<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> String {
+/// The advice in a message about an unknown `name`: up to three similar names, or all names if there are few.
+fn similar<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> String {
     let names: Vec<&str> = names.collect();
     let given = name.to_uppercase();
     let mut near: Vec<(usize, &str)> =
@@ -160,7 +164,7 @@ fn said<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// The Levenshtein distance: letters to change, to leave out or to insert.
+/// The Levenshtein distance of two texts: the least number of letters to change, to leave out or to insert.
 fn distance(one: &str, other: &str) -> usize {
     let other: Vec<char> = other.chars().collect();
     let mut row: Vec<usize> = (0..=other.len()).collect();

@@ -1,4 +1,4 @@
-//! `contact_normal_solve`, and what it shares with the solver handle.
+//! `contact_normal_solve`, and the parts of a solve that the solver handle uses as well.
 
 use super::arguments::Regions;
 use super::conclusion::Conclusion;
@@ -17,7 +17,7 @@ use crate::error::Rounded;
 use crate::scene::{Load, Scene};
 use crate::solver::{ActiveSet, Asked, InitialGuess, Method, Neglected, Options, Outcome, Report, Solver};
 
-/// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
+/// Solves one scene. `options` NULL: the default options; `fields`, `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solve(
     scene: *const contact_normal_scene,
@@ -33,7 +33,7 @@ pub unsafe extern "C" fn contact_normal_solve(
         let request = unsafe { Request::read(Needs::AllOrLess, arguments, outputs, &mut buffers, |_, _| Ok(())) };
         recording.keep(&buffers.regions);
         let Request { mut scene, options, mut outputs } = request?;
-        // Checked before the set-up, which a refused call does not need.
+        // Checked before the set-up, so that a refused call costs no set-up.
         outputs.check_inputs(&options.options, scene.grid.len())?;
         let watcher = Watcher::of(&options);
         if options.given.neglect_below > 0.0 {
@@ -53,29 +53,29 @@ pub unsafe extern "C" fn contact_normal_solve(
     unsafe { recorded("contact_normal_solve", options, arguments, solve) }
 }
 
-/// The arguments of a solve. The core checks the scene.
+/// The arguments of a solve. The values of the scene are not checked yet: the core does that.
 pub(super) struct Request<'a> {
     pub scene: Scene<'a>,
     pub options: Translated,
     pub outputs: Outputs,
 }
 
-/// The parts of a scene that a call needs.
+/// Which parts of a scene a call reads.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Needs {
-    /// One with an undeformed distance and a load.
+    /// All parts. The undeformed distance and the load must be given.
     All,
-    /// One as for `All`, whose effects may be left out.
+    /// As `All`. The call may leave out effects (`neglect_below`).
     AllOrLess,
-    /// One that may lack an undeformed distance. Then its load is not read either.
+    /// The undeformed distance may be NULL. Then the load is not read either.
     Bodies,
-    /// One whose pressures are given. Its undeformed distance and its load are not read.
+    /// The pressures are given: neither the undeformed distance nor the load is read.
     NoLoad,
 }
 
 impl Request<'_> {
-    /// Reads the structs. Refuses outputs that overlap: those of `fields` and `report`, and those that `also` adds for the number of elements. The
-    /// caller's arrays must live as long as the result is used.
+    /// Reads the structs. Refuses outputs that overlap with inputs or with each other: those of `fields` and `report`, and those that `also` adds for
+    /// the number of elements. The caller's arrays must live as long as the result is used.
     pub unsafe fn read<'a>(
         needs: Needs,
         (scene, options): (*const contact_normal_scene, *const contact_normal_options),
@@ -114,14 +114,14 @@ impl Request<'_> {
 }
 
 impl Request<'_> {
-    /// Whether the solve continues from the last result of the handle.
+    /// Whether the solve starts from the last result of the handle.
     pub fn goes_on(&self) -> bool {
         let continues = effects::continuing(&self.scene).next().is_some();
         continues || self.options.options.initial_guess == InitialGuess::Previous
     }
 }
 
-/// Solves with a solver that is set up, and writes the outputs.
+/// Solves a scene by a solver that is set up, and writes the outputs.
 pub(super) fn run(
     solver: &mut Solver,
     scene: &Scene<'_>,
@@ -138,34 +138,36 @@ pub(super) fn run(
     end(solver, (scene, options), solved, watcher, outputs)
 }
 
-/// Writes the outputs of a solve, and concludes.
+/// Writes the outputs of a solve. Returns the status, the message and the warnings.
 fn end(
     solver: &Solver,
     (scene, options): (&Scene<'_>, &Options),
-    (stop, report): (Outcome, Report),
+    (outcome, report): (Outcome, Report),
     watcher: &Watcher,
     outputs: &Outputs,
 ) -> Result<Conclusion, Refusal> {
     let warnings = outputs.warnings(scene, options, &report, solver.state());
     outputs.write_fields(solver, options.active_set == ActiveSet::Fixed);
     outputs.write_report(&report, solver.ledger(), warnings)?;
-    let message = || explain(stop, &report, options.method, Some(solver.state())) + &lack_of_force(scene.load, &report);
-    Ok(watcher.conclusion(Conclusion { warnings, ..Conclusion::of(stop, message) }))
+    let message =
+        || explain(outcome, &report, options.method, Some(solver.state())) + &lack_of_force(scene.load, &report);
+    Ok(watcher.conclusion(Conclusion { warnings, ..Conclusion::of(outcome, message) }))
 }
 
-pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Option<&State>) -> String {
+/// The message of a solve that did not converge: why the iteration ended, after how many cycles, and with which residuals.
+pub(super) fn explain(outcome: Outcome, report: &Report, method: Method, state: Option<&State>) -> String {
     let (cycles, residual) = (report.count.cycles, report.measures.certificate.residual);
     let tangential = report.friction.map(|found| format!("; that of friction is {:e}", found.certificate.residual));
     let counted = |count: u64, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let products = match report.friction {
-        Some(found) if stop == Outcome::IterationLimit => {
+        Some(found) if outcome == Outcome::IterationLimit => {
             format!(" and {} of friction", counted(found.products.round() as u64, "product"))
         }
         _ => String::new(),
     };
     let cycles = counted(cycles, "cycle");
-    let mut message = format!("{} after {cycles}{products}; the residual is {residual:e}", why(stop));
-    if stop != Outcome::Cancelled && residual <= report.tolerance && report.friction.is_none() {
+    let mut message = format!("{} after {cycles}{products}; the residual is {residual:e}", why(outcome));
+    if outcome != Outcome::Cancelled && residual <= report.tolerance && report.friction.is_none() {
         let Certificate { violation, complementarity, .. } = report.measures.certificate;
         message += &format!(", the violation {violation:e} and the complementarity {complementarity:e}");
     }
@@ -176,16 +178,16 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
     if let Some(missing) = report.friction.map(|found| found.missing).filter(|missing| *missing > report.tolerance) {
         message += &format!("; the tangential force is off by {missing:e} of mu N");
     }
-    if stop == Outcome::Stagnated {
+    if outcome == Outcome::Stagnated {
         message += &state.map_or_else(String::new, |state| stagnation(report, method, state));
     }
-    if stop != Outcome::Cancelled {
+    if outcome != Outcome::Cancelled {
         message += &report.friction.map_or_else(String::new, |found| advice_on_law(found.law_slope));
     }
     message
 }
 
-/// The part of the message about a force that differs from the given one by more than the tolerance.
+/// The part of the message about a force that differs from the given one by more than the tolerance; empty otherwise.
 fn lack_of_force(load: Load, report: &Report) -> String {
     let Load::Force(given) = load else { return String::new() };
     let lack = (report.measures.force / given - 1.0).abs();
@@ -204,12 +206,12 @@ fn lack_of_force(load: Load, report: &Report) -> String {
     format!("{found}; the force is off by {} of the one that is given", Rounded(lack))
 }
 
-/// The part of the message about a solve that stagnated: the reason, as far as the result shows it, and advice.
+/// The part of the message about a solve that stagnated: the reason, if the result shows it, and advice.
 fn stagnation(report: &Report, method: Method, state: &State) -> String {
     let (residual, distances) = (report.measures.certificate.residual, Distances::of(state));
-    // If the normal problem is solved, the tangential one has stagnated.
+    // If the residual of the normal problem meets the tolerance, the tangential problem has stagnated.
     let is_normal = report.friction.is_none() || residual > report.tolerance;
-    // Products and distances together lose some multiples of the round-off.
+    // The residual has the round-off of the product and of the distances: some multiples of that of one distance.
     if residual > report.tolerance && residual <= 100.0 * distances.round_off {
         return match distances.largest > FAR * distances.rms {
             true => format!(
@@ -233,30 +235,30 @@ fn stagnation(report: &Report, method: Method, state: &State) -> String {
     }
 }
 
-/// Ratio of distances to their rms from the approach above which they are measured from far away.
+/// If the largest of |h| and |u| exceeds the rms of h - approach by more than this factor, a message advises to measure h from a nearer plane.
 const FAR: f64 = 100.0;
 
-/// Distances of the contact area: of its free elements, if there are some, because the residual is relative to their distances.
+/// The size of h, u and h - approach on the elements in contact or, if there are none, on those at the pressure limit.
 struct Distances {
-    /// The largest of h, or of u.
+    /// The largest of |h| and |u|.
     largest: f64,
-    /// rms of h - approach.
+    /// rms of h - approach, to which the residual is relative.
     rms: f64,
-    /// Round-off of the largest, relative to the rms; 0 where there is none.
+    /// The round-off of `largest`, relative to `rms`; 0 if `rms` is 0.
     round_off: f64,
 }
 
 impl Distances {
     fn of(state: &State) -> Distances {
         let (mut largest, mut squares, mut count) = (0.0f64, 0.0, 0usize);
-        let has_free = state.contact_count() > 0;
-        for i in (0..state.h.len()).filter(|&i| if has_free { state.contact[i] } else { state.touches(i) }) {
+        let has_contact = state.contact_count() > 0;
+        for i in (0..state.h.len()).filter(|&i| if has_contact { state.contact[i] } else { state.touches(i) }) {
             largest = largest.max(state.h[i].abs()).max(state.u[i].abs());
             squares += (state.h[i] - state.approach).powi(2);
             count += 1;
         }
         let rms = (squares / count.max(1) as f64).sqrt();
-        let round_off = Some(f64::EPSILON * largest / rms).filter(|of| of.is_finite());
+        let round_off = Some(f64::EPSILON * largest / rms).filter(|round_off| round_off.is_finite());
         Distances { largest, rms, round_off: round_off.unwrap_or(0.0) }
     }
 }

@@ -1,4 +1,4 @@
-//! `contact_normal_solver`: a handle for many solves on one grid and one pair of bodies.
+//! `contact_normal_solver`: a handle for many solves on one grid with one pair of bodies.
 
 use std::cell::UnsafeCell;
 use std::ptr::null_mut;
@@ -20,10 +20,11 @@ use super::structs::{self, versioned, Versioned};
 use super::watcher::Watcher;
 use crate::solver::Solver;
 
-/// Operators, transforms, grids and workspace, built once. One thread at a time may use a handle; different handles may be
-/// used by different threads. While a call uses a handle, any other call with it, from a callback or from another thread, is refused
-/// (INVALID_ARGUMENT).
+/// A solver handle: the operators, transforms, grids and workspace of a scene, set up once for many solves. One thread at a time may use a handle;
+/// different threads may use different handles. While a call uses a handle, any other call with the same handle, from a callback or from another
+/// thread, is refused (INVALID_ARGUMENT).
 pub struct contact_normal_solver {
+    /// Whether a call uses the handle.
     is_in_use: AtomicBool,
     held: UnsafeCell<Held>,
 }
@@ -35,22 +36,22 @@ pub(in crate::ffi) struct Held {
 }
 
 impl contact_normal_solver {
-    /// A handle for a solver that is set up; `contact_normal_solver_free` frees it.
+    /// Makes a handle for a solver that is set up. `contact_normal_solver_free` frees the handle.
     pub(super) fn holding(solver: Solver) -> *mut contact_normal_solver {
         let held = UnsafeCell::new(Held { solver, buffers: Buffers::default() });
         Box::into_raw(Box::new(contact_normal_solver { is_in_use: AtomicBool::new(false), held }))
     }
 }
 
-/// A handle that a call uses, until it is dropped.
+/// While this value lives, a call uses the handle, and other calls with it are refused.
 pub(in crate::ffi) struct InUse<'a> {
     handle: &'a contact_normal_solver,
 }
 
 impl InUse<'_> {
-    /// `solver`: NULL or a handle that was not freed.
+    /// Begins to use a handle. `solver` must be a handle that is not freed; NULL is refused.
     pub unsafe fn begin<'a>(solver: *const contact_normal_solver) -> Result<InUse<'a>, Refusal> {
-        // SAFETY: NULL or a handle of ours; what changes in it is behind an atomic or an UnsafeCell.
+        // SAFETY: NULL or a handle of this library, of which only an atomic and an UnsafeCell change.
         let handle = unsafe { solver.as_ref() }.ok_or_else(|| Refusal::null("solver"))?;
         if handle.is_in_use.swap(true, Ordering::Acquire) {
             return Err(Refusal::invalid(
@@ -61,8 +62,9 @@ impl InUse<'_> {
         Ok(InUse { handle })
     }
 
+    /// The contents of the handle.
     pub fn held(&mut self) -> &mut Held {
-        // SAFETY: `is_in_use` lets one InUse of a handle exist, and this one is borrowed mutably.
+        // SAFETY: because of `is_in_use` a handle has one InUse at most, and this one is borrowed mutably.
         unsafe { &mut *self.handle.held.get() }
     }
 }
@@ -73,10 +75,9 @@ impl Drop for InUse<'_> {
     }
 }
 
-/// Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
-/// precision and threads of `options` (NULL: the defaults). Each solve takes an undeformed distance and a load of its own: they need not be
-/// set, and what is set must be valid. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
-/// Since 0.1.
+/// Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle, the precision and the
+/// threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` need not be set, because each solve has its own; if
+/// they are set, they must be valid. `*solver` is written only if the status is OK. `contact_normal_solver_free` frees the solver. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_new(
     scene: *const contact_normal_scene,
@@ -106,12 +107,13 @@ pub unsafe extern "C" fn contact_normal_solver_new(
     unsafe { recorded("contact_normal_solver_new", options, arguments, set_up) }
 }
 
-/// Solves for the undeformed distance, the load and the pressure limit of `scene`. Grid, bodies and their branches, layer, coatings, period
-/// and patches must be those of the set-up; what differs is refused by name. `scene->influence` and `scene->row_tables` may be NULL: those of the solver. If they
-/// are not NULL, each solve reads and compares them. Other coefficients need `contact_normal_solver_set_influence`. `fields`, `report`
-/// NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread, without coefficients to compare,
-/// and without friction, adhesion, pressure limits, patches and bodies that relax, which take some memory for the call (docs/conventions.md,
-/// "Many solves"). Since 0.1.
+/// Solves for the undeformed distance, the load, the pressure limit, the friction and the adhesion of `scene`. The grid, the bodies and their
+/// branches, the layer, the coatings, the period and the patches must be those of the set-up; the message of a refusal names what differs.
+/// `scene->influence` and `scene->row_tables` may be NULL: the solver uses the tables of the set-up. If they are not NULL, each solve compares them
+/// with these tables; only `contact_normal_solver_set_influence` changes the coefficients. `fields`, `report` NULL: not wanted.
+///
+/// With one thread, later solves of the same kind as the first one allocate nothing (docs/conventions.md, "Many solves", has the exceptions). Tables
+/// that are compared, friction, adhesion, pressure limits, patches and bodies that relax take some memory for the call. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_solve(
     solver: *mut contact_normal_solver,
@@ -122,7 +124,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
 ) -> contact_normal_status {
     let arguments = given![scene, options, fields, report];
     let solve = |recording: &mut Recording<'_>| {
-        // SAFETY: NULL or a handle of ours.
+        // SAFETY: NULL or a handle of this library.
         let mut in_use = unsafe { InUse::begin(solver)? };
         let Held { solver, buffers } = in_use.held();
         // SAFETY: as in contact_normal_solver_new.
@@ -135,11 +137,11 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
     unsafe { recorded("contact_normal_solver_solve", options, arguments, solve) }
 }
 
-/// Gives a solver other coefficients, and their scale, for all later solves. `influence`: those of the normal problem; `friction`: its
-/// `influence` and `influence_cross`, or its `row_tables`; nothing else of it is used. NULL: the old ones stay; one of the two must be given.
-/// The solver must have been set up with coefficients of the same kinds: `scene->influence`; `friction->influence` or `row_tables`, and
-/// `influence_cross` or none. Its plans and its memory are kept, and so is its last result, from which PREVIOUS and `continues` may start.
-/// A call that is refused changes nothing; after OUT_OF_MEMORY set both again. Since 0.1.
+/// Gives a solver other influence coefficients, with their scale, for all later solves. `influence` has those of the normal problem. `friction` has
+/// the tangential ones: `influence` and `influence_cross`, or `row_tables`; its other members are not used. NULL: the coefficients stay as they are;
+/// one of both must be given. The solver must have been set up with coefficients of the same kinds: `scene->influence`; `friction->influence` or
+/// `row_tables`; with `influence_cross` or without. The plans, the memory and the last result of the solver are kept, so PREVIOUS and `continues`
+/// may start from this result. A call that is refused changes nothing, except after OUT_OF_MEMORY: then set both again. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_set_influence(
     solver: *mut contact_normal_solver,
@@ -147,14 +149,16 @@ pub unsafe extern "C" fn contact_normal_solver_set_influence(
     friction: *const contact_normal_friction,
 ) -> contact_normal_status {
     guard(|| {
-        // SAFETY: NULL or a handle of ours.
+        // SAFETY: NULL or a handle of this library.
         let mut in_use = unsafe { InUse::begin(solver)? };
         let Held { solver, .. } = in_use.held();
         // SAFETY (all): NULL or structs that declare their size, with tables of the sizes that they say.
         let (table, friction) = unsafe {
             let grid = solver.grid();
-            let table = structs::read_optional(influence, "influence")?.map(|of| of.translate(grid)).transpose()?;
-            let friction = structs::read_optional(friction, "friction")?.map(|of| of.tables_alone()).transpose()?;
+            let table =
+                structs::read_optional(influence, "influence")?.map(|table| table.translate(grid)).transpose()?;
+            let friction =
+                structs::read_optional(friction, "friction")?.map(|given| given.tables_alone()).transpose()?;
             (table, friction)
         };
         if table.is_none() && friction.is_none() {
@@ -173,18 +177,18 @@ pub unsafe extern "C" fn contact_normal_solver_set_influence(
     })
 }
 
-/// Copies the last result of a handle: of `contact_normal_solver_solve`, or the one that `contact_normal_solve_to_accuracy` made it
-/// with, whose grid has `accuracy->mx` x `accuracy->my` elements. A solve has a result when its status is >= 0; one that was refused
-/// leaves the result before as it is, or none if it failed on the way. One that was refused for its friction always leaves it. Tractions, slip
-/// and stick area are those that `contact_normal_solve_tangential` found with this handle since, if it did.
-/// INVALID_ARGUMENT if there is none. Since 0.1.
+/// Copies the last result of a handle to `fields`. It is the result of `contact_normal_solver_solve`, or the one with which
+/// `contact_normal_solve_to_accuracy` made the handle; the grid of the latter has `accuracy->mx` x `accuracy->my` elements. A solve has a result if
+/// its status is >= 0. If a solve is refused before it begins or because of its friction, the handle keeps the result before; if it fails later,
+/// the handle may have no result. If `contact_normal_solve_tangential` was called with this handle since, tractions, slip and stick area are those
+/// of that call. INVALID_ARGUMENT: there is no result. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_fields(
     solver: *const contact_normal_solver,
     fields: *mut contact_normal_fields,
 ) -> contact_normal_status {
     guard(|| {
-        // SAFETY: NULL or a handle of ours.
+        // SAFETY: NULL or a handle of this library.
         let mut in_use = unsafe { InUse::begin(solver)? };
         let Held { solver, buffers } = in_use.held();
         if fields.is_null() {
@@ -205,38 +209,38 @@ pub unsafe extern "C" fn contact_normal_solver_fields(
     })
 }
 
-/// The settings of a solver: see `contact_normal_solver_query`.
+/// The settings of a solver handle: see `contact_normal_solver_query`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_solver_info {
     /// Set by `contact_normal_solver_info_init`.
     pub struct_size: i64,
-    /// Elements in x of its grid.
+    /// Elements in x of the solver's grid.
     pub mx: i32,
-    /// Elements in y.
+    /// Elements in y of the solver's grid.
     pub my: i32,
     /// Element size in x.
     pub dx: f64,
     /// Element size in y.
     pub dy: f64,
-    /// Threads that it was set up with; 0: all cores.
+    /// The threads with which the solver was set up; 0: all cores.
     pub threads: i32,
-    /// 1: it holds a result, for `contact_normal_solver_fields`; 0: it does not.
+    /// 1: the solver has a result, which `contact_normal_solver_fields` copies; 0: the solver has none.
     pub has_result: i32,
-    /// Bytes that it holds.
+    /// The bytes of memory that the solver holds.
     pub bytes: i64,
 }
 
 versioned! { contact_normal_solver_info, contact_normal_solver_info_init, 48 }
 
-/// Writes the settings of a solver: its grid, its threads, its bytes, and whether it has a result. Since 0.2.
+/// Writes the settings of a solver to `info`: the grid, the threads, the bytes, and whether the solver has a result. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_query(
     solver: *const contact_normal_solver,
     info: *mut contact_normal_solver_info,
 ) -> contact_normal_status {
     guard(|| {
-        // SAFETY: NULL or a handle of ours.
+        // SAFETY: NULL or a handle of this library.
         let mut in_use = unsafe { InUse::begin(solver)? };
         let Held { solver, .. } = in_use.held();
         let grid = *solver.grid();
@@ -259,17 +263,17 @@ pub unsafe extern "C" fn contact_normal_solver_query(
     })
 }
 
-/// Frees a solver. INVALID_ARGUMENT: a call uses it, and nothing was freed: free it after that call. NULL is ignored. The library keeps
-/// memory of what is freed for later solvers: see `contact_normal_release`. Since 0.1.
+/// Frees a solver. INVALID_ARGUMENT: a call uses the solver, so it is not freed; free it after that call. NULL is ignored. The library keeps some of
+/// the freed memory for later solvers: see `contact_normal_release`. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_free(solver: *mut contact_normal_solver) -> contact_normal_status {
     guard(|| {
         if solver.is_null() {
             return Ok(CONTACT_NORMAL_OK);
         }
-        // SAFETY: not null: a handle of ours. It stays in use, so that nothing else begins with it.
+        // SAFETY: not null, so a handle of this library. `forget` leaves it in use, so that no other call can begin to use it.
         std::mem::forget(unsafe { InUse::begin(solver)? });
-        // SAFETY: made by `holding`, in no other use, and not used after this.
+        // SAFETY: made by `holding`; no other call uses it now or later.
         drop(unsafe { Box::from_raw(solver) });
         Ok(CONTACT_NORMAL_OK)
     })

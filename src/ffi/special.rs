@@ -1,4 +1,4 @@
-//! Closed forms and coefficient tables.
+//! Exact solutions, and tables of influence coefficients.
 
 use super::arguments::{aligned, count, required};
 use super::guard::guard;
@@ -18,7 +18,7 @@ use crate::memory::zeros;
 use crate::scene::{Bodies, Load};
 use crate::visco::{rolling_table, RollingBody};
 
-/// The exact Hertz solution.
+/// Hertz's exact solution for two bodies with an elliptical contact area.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_hertz_solution {
@@ -26,21 +26,21 @@ pub struct contact_normal_hertz_solution {
     pub struct_size: i64,
     /// Semi-axis of the contact ellipse in x.
     pub semi_axis_x: f64,
-    /// Semi-axis in y.
+    /// Semi-axis of the contact ellipse in y.
     pub semi_axis_y: f64,
-    /// Pressure at the centre.
+    /// Pressure at the centre of the ellipse.
     pub max_pressure: f64,
     /// Approach.
     pub approach: f64,
     /// Normal force.
     pub force: f64,
-    /// Area of the ellipse.
+    /// Area of the contact ellipse.
     pub area: f64,
 }
 
 versioned! { contact_normal_hertz_solution, contact_normal_hertz_solution_init, 56 }
 
-/// The bodies from two shear moduli and two Poisson's ratios.
+/// The bodies with two shear moduli and two Poisson ratios.
 unsafe fn bodies(shear_modulus: *const f64, poisson_ratio: *const f64) -> Result<Bodies, Refusal> {
     // SAFETY: NULL or two values each, by the conventions of the ABI.
     let (moduli, ratios) =
@@ -50,8 +50,9 @@ unsafe fn bodies(shear_modulus: *const f64, poisson_ratio: *const f64) -> Result
     Ok(bodies)
 }
 
-/// Exact contact of two bodies with `h = curvature_x x^2 + curvature_y y^2` (1/length, positive), for `load`
-/// PRESCRIBED_APPROACH or PRESCRIBED_FORCE with the value `amount`. `shear_modulus` and `poisson_ratio`: two values. Since 0.1.
+/// Computes Hertz's exact solution for two bodies with the undeformed distance `h = curvature_x x^2 + curvature_y y^2`; the curvatures are positive,
+/// 1/length. `load` is PRESCRIBED_APPROACH or PRESCRIBED_FORCE, and `amount` the value of the approach or force. `shear_modulus` and `poisson_ratio`
+/// have two values each. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_hertz(
     curvature_x: f64,
@@ -80,9 +81,9 @@ pub unsafe extern "C" fn contact_normal_hertz(
     })
 }
 
-/// The influence coefficients of the half-space for elements `dx` by `dy`, as a table over offsets -cx..cx-1 by -cy..cy-1:
-/// `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. NOT_FINITE, INVALID_ARGUMENT: coefficients beyond the range of
-/// doubles. Since 0.1.
+/// Computes the influence coefficients of the half-space for elements `dx` by `dy`, as a table over the offsets -cx to cx - 1 and -cy to cy - 1:
+/// `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. NOT_FINITE, INVALID_ARGUMENT: the coefficients are beyond the range
+/// of doubles. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_influence_half_space(
     cx: i32,
@@ -104,7 +105,7 @@ pub unsafe extern "C" fn contact_normal_influence_half_space(
         }
         aligned("coefficients", coefficients, 1)?;
         let half_space = HalfSpace::new(dx, dy, compliance);
-        // The largest and the smallest one.
+        // The largest and the smallest coefficient.
         for value in [half_space.at(0, 0), half_space.at(cx as i64, cy as i64)] {
             let rule = "element sizes and moduli take it out of the range of numbers";
             require(value > 0.0 && value.is_normal(), "a coefficient", value, rule)?;
@@ -121,11 +122,12 @@ pub unsafe extern "C" fn contact_normal_influence_half_space(
     })
 }
 
-/// The influence coefficients of bodies that relax and roll steadily, without a change in time, as a table over offsets -cx..cx-1 by -cy..cy-1:
-/// `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. `shear_modulus` and `poisson_ratio`: two values each, the moduli those at
-/// once; of `visco` the branches, moduli and times are read. `speed`: how fast the bodies roll towards +x; < 0: towards -x. The table is not even in x, so
-/// it serves the normal problem. UNSUPPORTED: a body of whose modulus nothing is left in the end. NOT_FINITE, INVALID_ARGUMENT: coefficients
-/// beyond the range of doubles. Since 0.2.
+/// Computes the influence coefficients of pressures for viscoelastic bodies in steady rolling, as a table over the offsets -cx to cx - 1 and -cy to
+/// cy - 1: `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. `shear_modulus` (the instantaneous moduli) and
+/// `poisson_ratio` have two values each; of `visco` the branches, the moduli and the times are read. `speed` is the speed of rolling, positive
+/// towards +x and negative towards -x. The table is not even in x. It is for the normal problem;
+/// `contact_normal_influence_rolling_tangential` has the tables for friction. UNSUPPORTED: the modulus of a body relaxes to 0. NOT_FINITE,
+/// INVALID_ARGUMENT: the coefficients are beyond the range of doubles. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_influence_rolling(
     cx: i32,
@@ -150,10 +152,10 @@ pub unsafe extern "C" fn contact_normal_influence_rolling(
     })
 }
 
-/// The tangential influence coefficients of bodies that relax and roll steadily, as tables that `friction->influence` takes in steady rolling: `xx`, `yy` and
-/// `xy`, one after the other, each over the offsets of `contact_normal_influence_rolling`: `coefficients[3][2 cy][2 cx]`. The other arguments are those of that
-/// function. UNSUPPORTED: unlike bodies, at once or as they relax, and a body of whose modulus nothing is left in the end. NOT_FINITE, INVALID_ARGUMENT:
-/// coefficients beyond the range of doubles. Since 0.2.
+/// Computes the tangential influence coefficients of viscoelastic bodies in steady rolling, as tables that `friction->influence` takes in steady
+/// rolling: xx, yy and xy, one after the other, each over the offsets of `contact_normal_influence_rolling`: `coefficients[3][2 cy][2 cx]`. The
+/// other arguments are those of that function. UNSUPPORTED: the bodies are unlike, at once or as they relax, or the modulus of a body relaxes to 0.
+/// NOT_FINITE, INVALID_ARGUMENT: the coefficients are beyond the range of doubles. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_influence_rolling_tangential(
     cx: i32,
@@ -184,7 +186,8 @@ pub unsafe extern "C" fn contact_normal_influence_rolling_tangential(
     })
 }
 
-/// Writes K tables of bodies that relax and roll steadily, one after the other. `make` takes the numbers of offsets, Poisson's ratios and the bodies.
+/// Writes the K tables that `make` computes for viscoelastic bodies in steady rolling, one after the other. `make` takes cx and cy, the Poisson
+/// ratios and the bodies.
 unsafe fn write_rolling<const K: usize>(
     (cx, cy): (i32, i32),
     (dx, dy): (f64, f64),

@@ -1,4 +1,4 @@
-//! Statuses, their texts, the last error message, versions.
+//! The status of a call, its text, the message of the last call, and versions.
 
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
@@ -13,44 +13,44 @@ pub type contact_normal_status = i32;
 
 /// Solved: the certificate holds to the tolerance.
 pub const CONTACT_NORMAL_OK: i32 = 0;
-/// `max_cycles`, `max_seconds` or a limit of an accuracy was reached; outputs hold the best iterate.
+/// `max_cycles`, `max_seconds` or a limit of `contact_normal_accuracy` was reached; outputs hold the best iterate.
 pub const CONTACT_NORMAL_ITERATION_LIMIT: i32 = 1;
-/// A callback or `options->stop` cancelled; outputs hold the best iterate.
+/// A callback or `options->stop` cancelled the call; outputs hold the best iterate.
 pub const CONTACT_NORMAL_CANCELLED: i32 = 2;
-/// No further progress; outputs hold the best iterate.
+/// The iteration made no further progress; outputs hold the best iterate.
 pub const CONTACT_NORMAL_STAGNATED: i32 = 3;
-/// A pointer that must not be NULL is.
+/// A pointer is NULL that must not be NULL.
 pub const CONTACT_NORMAL_NULL_POINTER: i32 = -1;
 /// An argument breaks a rule; the message names it, its value and the rule.
 pub const CONTACT_NORMAL_INVALID_ARGUMENT: i32 = -2;
-/// A NaN, or an infinity where none is allowed.
+/// An input is NaN, or infinite where it must be finite.
 pub const CONTACT_NORMAL_NOT_FINITE: i32 = -3;
-/// A struct_size that no version of the struct has; call its `_init`.
+/// A struct has a struct_size that no version of this struct has; call its `_init`.
 pub const CONTACT_NORMAL_STRUCT_SIZE: i32 = -4;
-/// A valid request that this version does not carry out.
+/// The request is valid, but this version of the library does not carry it out.
 pub const CONTACT_NORMAL_UNSUPPORTED: i32 = -5;
-/// The force cannot be carried.
+/// The prescribed force cannot be carried, or the approach goes beyond full contact in a scene with two periods.
 pub const CONTACT_NORMAL_INFEASIBLE: i32 = -6;
-/// The influence coefficients are not those of a positive definite operator.
+/// The influence coefficients do not belong to a positive definite operator.
 pub const CONTACT_NORMAL_NOT_POSITIVE_DEFINITE: i32 = -7;
-/// Memory (or a thread) could not be had.
+/// Memory could not be allocated, or a thread could not be started.
 pub const CONTACT_NORMAL_OUT_OF_MEMORY: i32 = -8;
-/// The influence coefficients are not those that the solver has: `contact_normal_solver_set_influence` gives it others.
+/// The influence coefficients differ from those of the solver handle, which only `contact_normal_solver_set_influence` changes.
 pub const CONTACT_NORMAL_INFLUENCE_CHANGED: i32 = -9;
-/// A bug of ours, caught at the boundary.
+/// An error of the library itself; please report it.
 pub const CONTACT_NORMAL_INTERNAL: i32 = -99;
 
-/// The version of the header: 0.2.0 has MAJOR 0, MINOR 2, PATCH 0. `contact_normal_version` is that of the library.
+/// The first number of the version of this header: 0.2.0 has MAJOR 0, MINOR 2, PATCH 0. `contact_normal_version` is that of the library.
 pub const CONTACT_NORMAL_VERSION_MAJOR: i32 = 0;
-/// The second number of the version.
+/// The second number of the version of this header.
 pub const CONTACT_NORMAL_VERSION_MINOR: i32 = 2;
-/// The third number of the version.
+/// The third number of the version of this header.
 pub const CONTACT_NORMAL_VERSION_PATCH: i32 = 0;
 
-/// Version of the ABI: grows with every release that adds to it.
+/// The version of the ABI. It grows with every release that adds to the ABI.
 pub const CONTACT_NORMAL_ABI_VERSION: i32 = 2;
 
-/// A refusal at the boundary.
+/// The status and the message with which a call is refused.
 #[derive(Clone, Debug)]
 pub(super) struct Refusal {
     pub status: contact_normal_status,
@@ -97,8 +97,8 @@ impl From<par::OutOfMemory> for Refusal {
 }
 
 impl From<Outcome> for i32 {
-    fn from(stop: Outcome) -> contact_normal_status {
-        match stop {
+    fn from(outcome: Outcome) -> contact_normal_status {
+        match outcome {
             Outcome::Converged => CONTACT_NORMAL_OK,
             Outcome::IterationLimit => CONTACT_NORMAL_ITERATION_LIMIT,
             Outcome::Cancelled => CONTACT_NORMAL_CANCELLED,
@@ -107,7 +107,7 @@ impl From<Outcome> for i32 {
     }
 }
 
-/// The text of the last message, if it needs memory.
+/// The memory of the last message, unless the message is a static text.
 struct Owned(RefCell<Option<CString>>);
 
 impl Drop for Owned {
@@ -117,31 +117,32 @@ impl Drop for Owned {
 }
 
 thread_local! {
-    /// The last message. This cell has no destructor. So a call has its message even while a thread ends.
+    /// The last message of this thread. The cell has no destructor, so calls have a message even while the thread ends.
     static LAST_ERROR: Cell<*const c_char> = const { Cell::new(c"".as_ptr()) };
     static OWNED: Owned = const { Owned(RefCell::new(None)) };
 }
 
+/// Sets the message of the last call on this thread.
 pub(super) fn set_last_error(message: &str) {
     let text: Vec<u8> = message.bytes().filter(|&b| b != 0).collect();
     let message = CString::new(text).unwrap_or_default();
     let text = message.as_ptr();
     let mut message = Some(message);
     if OWNED.try_with(|owned| owned.0.replace(message.take())).is_err() {
-        // This thread ends, and has lost the place of the text: it stays until the process ends.
+        // The thread ends and OWNED is gone. The text stays in memory until the process ends.
         message.map(CString::into_raw);
     }
     LAST_ERROR.set(text);
 }
 
-/// Sets a text that needs no memory as the message of the last call.
+/// As [`set_last_error`], for a static text, which needs no memory.
 pub(super) fn set_last_text(message: &'static CStr) {
     LAST_ERROR.set(message.as_ptr());
 }
 
 /// The message of the last call on this thread.
 pub(super) fn last_error_text() -> String {
-    // SAFETY: a text of the library, or the one that OWNED has.
+    // SAFETY: a static text, or the text in OWNED.
     unsafe { CStr::from_ptr(LAST_ERROR.get()) }.to_string_lossy().into_owned()
 }
 
@@ -165,26 +166,27 @@ fn text_of(status: contact_normal_status) -> &'static CStr {
     }
 }
 
-/// A short text for a status; never NULL, static storage. Since 0.1.
+/// Returns a short text for a status: never NULL, in static storage. Since 0.1.
 #[no_mangle]
 pub extern "C" fn contact_normal_status_text(status: contact_normal_status) -> *const c_char {
     text_of(status).as_ptr()
 }
 
-/// The message of the last call on this thread that did not return OK, or returned OK with `report->warnings`, or "". It names the argument, its value and the rule.
-/// Never NULL; valid until the next call of this library on this thread. Since 0.1.
+/// Returns the message of the last call on this thread that did not return OK, or that returned OK with `report->warnings`; "" if there was none.
+/// The message of a refused argument names the argument, its value and the rule. The pointer is never NULL, and valid until the next call of this
+/// library on this thread. Since 0.1.
 #[no_mangle]
 pub extern "C" fn contact_normal_last_error() -> *const c_char {
     LAST_ERROR.get()
 }
 
-/// The version of the library, as "0.2.0"; static storage. Since 0.1.
+/// Returns the version of the library, as "0.2.0", in static storage. Since 0.1.
 #[no_mangle]
 pub extern "C" fn contact_normal_version() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
 }
 
-/// `CONTACT_NORMAL_ABI_VERSION` of the library: at least that of the header it is used with. Since 0.1.
+/// Returns `CONTACT_NORMAL_ABI_VERSION` of the library, which should be at least that of the header. Since 0.1.
 #[no_mangle]
 pub extern "C" fn contact_normal_abi_version() -> i32 {
     CONTACT_NORMAL_ABI_VERSION

@@ -15,13 +15,17 @@ use crate::scene::Scene;
 use crate::stress::{self, Body, Loads, Maximum};
 use crate::threads::Threads;
 
-/// Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and tractions
-/// `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on this body, in +x
-/// and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
-/// and `patches` matter: below an element of a patch the loads on another one count times the factor between both, and below one of no patch
-/// all loads in full. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options (NULL:
-/// the defaults) `threads`, `progress`, `max_seconds`, `stop` and `dump` matter; a cycle is a depth. CANCELLED, or ITERATION_LIMIT by `max_seconds`: the
-/// depths done so far are written, others are left alone. Loads must lie below 1e304. Without a depth the largest stresses are left alone. Since 0.2.
+/// Computes the stresses in body 1 or 2 (`body`) of a scene, a half-space, at n depths below the centres of the elements. The loads are pressures and
+/// tractions, `[my][mx]` each and constant on each element; NULL: none, but one array must be given. They must be below 1e304. Tractions are those on
+/// this body, positive towards +x and +y. Depths are >= 0, positive into the body, in any order.
+///
+/// Of the scene the call uses the grid, the Poisson ratio of the body, a `period` in both directions, and `patches`. Below an element of a patch the
+/// loads on another patch count times the factor between both patches; below an element of no patch all loads count in full. UNSUPPORTED: a `coating`
+/// on this body, `influence`, `row_tables`, or a period in one direction only.
+///
+/// Of the options (NULL: the defaults) the call uses `threads`, `progress` (with depths in place of cycles), `max_seconds`, `stop` and `dump`.
+/// CANCELLED, or ITERATION_LIMIT after `max_seconds`: the depths so far are written, the outputs of the others stay unchanged. With n = 0 the largest
+/// stresses are not written. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_subsurface_stress(
     scene: *const contact_normal_scene,
@@ -40,11 +44,11 @@ pub unsafe extern "C" fn contact_normal_subsurface_stress(
         unsafe {
             let load = Load { scene, body, options, arrays: [pressure, traction_x, traction_y] };
             let n = not_negative("n", n)?;
-            let written = structs::read(outputs.cast_const(), "outputs")?;
+            let wanted = structs::read(outputs.cast_const(), "outputs")?;
             let mut regions = Regions::default();
             let elements = load.add_to(&mut regions)?;
             regions.input("depths", depths, n)?;
-            written.add_to(&mut regions, outputs, (n, elements))?;
+            wanted.add_to(&mut regions, outputs, (n, elements))?;
             recording.keep(&regions);
             regions.check()?;
             let (scene, options) = load.read()?;
@@ -52,20 +56,20 @@ pub unsafe extern "C" fn contact_normal_subsurface_stress(
             let depths = if n == 0 { &[] } else { required("depths", depths, n)? };
             let watcher = Watcher::of(&options);
             let told = &mut watcher.told();
-            let found = run(&body, &loads, depths, (&options, &written), watcher.callback(told))?;
-            watcher.conclusion(found).conclude()
+            let conclusion = compute_depths(&body, &loads, depths, (&options, &wanted), watcher.callback(told))?;
+            watcher.conclusion(conclusion).conclude()
         }
     };
     // SAFETY: as above.
     unsafe { recorded("contact_normal_subsurface_stress", options, arguments, compute) }
 }
 
-/// Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the middle of the grid, so that
-/// element (ix, iy) has its centre at ((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz,
-/// yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused: stresses jump there or are infinite. With
-/// `patches` a point must lie below the grid; it takes the factors of the patch of the element above, on an edge that of the larger index.
-/// Time grows with n times the number of loaded elements. CANCELLED, or ITERATION_LIMIT by `max_seconds`: stresses of points that were not
-/// reached are 0. With `period`: UNSUPPORTED. Since 0.2.
+/// Computes the stresses of `contact_normal_subsurface_stress` at n `points` `[n][3]`. A point has the coordinates x and y from the middle of the
+/// grid, where element (ix, iy) has its centre at ((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy,
+/// zz, xy, xz, yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused, because stresses jump there or are
+/// infinite. With `patches` a point must lie below the grid, and has the factors of the patch of the element above (on an edge, of the element with
+/// the larger index). The time grows with n times the number of loaded elements. CANCELLED, or ITERATION_LIMIT after `max_seconds`: the stresses of
+/// points that were not reached are 0. UNSUPPORTED: a `period`. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_stress_at_points(
     scene: *const contact_normal_scene,
@@ -99,14 +103,14 @@ pub unsafe extern "C" fn contact_normal_stress_at_points(
             if stress.is_null() {
                 return Err(Refusal::null("stress"));
             }
-            let mut found = zeros(n, "the stresses of points")?;
+            let mut computed = zeros(n, "the stresses of points")?;
             let threads = Threads::new(options.options.threads)?;
             let watcher = Watcher::of(&options);
             let told = &mut watcher.told();
             let progress = watcher.callback(told);
-            let all = stress::stress_at_points(&body, &loads, points, &threads, progress, &mut found)?;
-            let outcome = if all { Outcome::Converged } else { Outcome::Cancelled };
-            std::ptr::copy_nonoverlapping(found.as_ptr(), stress.cast::<[f64; 6]>(), n);
+            let is_complete = stress::stress_at_points(&body, &loads, points, &threads, progress, &mut computed)?;
+            let outcome = if is_complete { Outcome::Converged } else { Outcome::Cancelled };
+            std::ptr::copy_nonoverlapping(computed.as_ptr(), stress.cast::<[f64; 6]>(), n);
             let message = || format!("{}; stresses of points that were not reached are 0", why(outcome));
             watcher.conclusion(Conclusion::of(outcome, message)).conclude()
         }
@@ -115,16 +119,17 @@ pub unsafe extern "C" fn contact_normal_stress_at_points(
     unsafe { recorded("contact_normal_stress_at_points", options, arguments, compute) }
 }
 
-/// The first arguments of both exports.
+/// The arguments that both exported functions have.
 struct Load {
     scene: *const contact_normal_scene,
     body: i32,
     options: *const contact_normal_options,
+    /// The pressures, and the tractions in x and in y.
     arrays: [*const f64; 3],
 }
 
 impl Load {
-    /// The scene, which needs no load, and the options.
+    /// Reads the scene, which needs no undeformed distance and no load, and the options.
     unsafe fn read<'a>(&self) -> Result<(Scene<'a>, Translated), Refusal> {
         // SAFETY: by the caller.
         let scene = unsafe { Named::read(self.scene)?.load_or_none().with_distance(&[])? };
@@ -132,14 +137,14 @@ impl Load {
         Ok((scene, unsafe { options::translate(self.options)? }))
     }
 
-    /// The half-space of that scene, and its loads.
+    /// The half-space that is the body, and the loads on it.
     unsafe fn on<'a>(&self, scene: &'a Scene<'a>) -> Result<(Body, Loads<'a>), Refusal> {
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
         let arrays = self.arrays.map(|array| unsafe { optional(array, scene.grid.len()) });
         Ok(stress::of_scene(scene, self.body, arrays)?)
     }
 
-    /// Adds the regions that the call reads. Returns the number of elements.
+    /// Adds the structs and arrays that the call reads. Returns the number of elements.
     unsafe fn add_to(&self, regions: &mut Regions) -> Result<usize, Refusal> {
         // SAFETY (all): by the caller.
         let (named, options) = unsafe { (Named::read(self.scene)?, options::translate(self.options)?) };
@@ -152,8 +157,8 @@ impl Load {
     }
 }
 
-/// Computes and writes the stresses while `progress` is told of each depth.
-fn run(
+/// Computes and writes the stresses depth by depth. Calls `progress` after each depth.
+fn compute_depths(
     body: &Body,
     loads: &Loads<'_>,
     depths: &[f64],
@@ -162,19 +167,20 @@ fn run(
 ) -> Result<Conclusion, Refusal> {
     let threads = Threads::new(options.options.threads)?;
     let (mut mises, mut shear) = (None, None);
-    let all = stress::subsurface_stress(body, loads, depths, &outputs.wanted(), &threads, progress, |k, depth| {
+    let wanted = outputs.wanted();
+    let is_complete = stress::subsurface_stress(body, loads, depths, &wanted, &threads, progress, |k, depth| {
         Maximum::join(&mut mises, &depth.von_mises, k, (&body.grid, loads));
         Maximum::join(&mut shear, &depth.maximum_shear, k, (&body.grid, loads));
         // SAFETY: the caller's arrays, which were checked.
         unsafe { outputs.write(k, depth) };
     })?;
-    for (found, to) in [(mises, outputs.largest_von_mises), (shear, outputs.largest_shear)] {
-        if let (Some(found), false) = (found, to.is_null()) {
-            let largest = contact_normal_stress_maximum::new(&found, depths[found.depth], &body.grid);
+    for (maximum, to) in [(mises, outputs.largest_von_mises), (shear, outputs.largest_shear)] {
+        if let (Some(maximum), false) = (maximum, to.is_null()) {
+            let largest = contact_normal_stress_maximum::new(&maximum, depths[maximum.depth], &body.grid);
             // SAFETY: not null: a struct that declares its size, which was checked.
             unsafe { structs::write(to, &largest)? };
         }
     }
-    let outcome = if all { Outcome::Converged } else { Outcome::Cancelled };
+    let outcome = if is_complete { Outcome::Converged } else { Outcome::Cancelled };
     Ok(Conclusion::of(outcome, || format!("{}; the depths done so far are written", why(outcome))))
 }

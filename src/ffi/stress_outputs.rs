@@ -1,4 +1,4 @@
-//! Where stresses below the surface are written, and the place of the largest.
+//! The caller's arrays for stresses below the surface, and the largest stresses with their places.
 
 use super::arguments::{copy_to, Regions};
 use super::status::Refusal;
@@ -6,25 +6,25 @@ use super::structs::{self, versioned};
 use crate::grid::Grid;
 use crate::stress::{Depth, Maximum, Wanted};
 
-/// The largest value of a field of stresses, and where it is: at the centre of an element, at one of the depths.
+/// The largest value of a stress over all depths, and its place: below the centre of an element, at one of the depths.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_stress_maximum {
     /// Set by `contact_normal_stress_maximum_init`.
     pub struct_size: i64,
-    /// The value.
+    /// The largest value of the stress.
     pub value: f64,
-    /// Its place, from the middle of the grid: (ix + 1/2 - mx/2) dx.
+    /// The place of the largest value in x, from the middle of the grid: (ix + 1/2 - mx/2) dx.
     pub x: f64,
-    /// The same in y.
+    /// The place in y, from the middle of the grid: (iy + 1/2 - my/2) dy.
     pub y: f64,
-    /// The depth.
+    /// The depth of the place.
     pub z: f64,
-    /// The element above it.
+    /// The element above the place: its number in x, from 0.
     pub ix: i32,
-    /// The same in y.
+    /// The element above the place: its number in y, from 0.
     pub iy: i32,
-    /// Which of the depths, from 0.
+    /// The number of the depth in `depths`, from 0.
     pub depth: i32,
     /// Always 0.
     pub reserved: i32,
@@ -32,13 +32,13 @@ pub struct contact_normal_stress_maximum {
 
 versioned! { contact_normal_stress_maximum, contact_normal_stress_maximum_init, 56 }
 
-/// Where stresses are written; NULL: not wanted, and not computed. Stresses are positive in tension.
+/// The caller's arrays for stresses. NULL: not wanted, and not computed. Stresses are positive in tension.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_stress_outputs {
     /// Set by `contact_normal_stress_outputs_init`.
     pub struct_size: i64,
-    /// The components xx, yy, zz, xy, xz, yz, `[n][my][mx]` each for n depths; default NULL.
+    /// The components xx, yy, zz, xy, xz, yz at n depths, `[n][my][mx]` each; default NULL.
     pub stress: [*mut f64; 6],
     /// The von Mises stress, `[n][my][mx]`, or NULL (default).
     pub von_mises: *mut f64,
@@ -46,17 +46,18 @@ pub struct contact_normal_stress_outputs {
     pub maximum_shear: *mut f64,
     /// The principal stresses, the largest first, `[n][my][mx]` each; default NULL.
     pub principal: [*mut f64; 3],
-    /// The unit vectors of their directions, `[n][my][mx][3]` each; default NULL.
+    /// The unit vectors of the directions of the principal stresses, `[n][my][mx][3]` each; default NULL.
     pub directions: [*mut f64; 3],
-    /// The largest von Mises stress of all depths, or NULL (default).
+    /// The largest von Mises stress of all depths and its place, or NULL (default).
     pub largest_von_mises: *mut contact_normal_stress_maximum,
-    /// The largest shear stress of all depths, or NULL (default).
+    /// The largest shear stress of all depths and its place, or NULL (default).
     pub largest_shear: *mut contact_normal_stress_maximum,
 }
 
 versioned! { contact_normal_stress_outputs, contact_normal_stress_outputs_init, 136 }
 
 impl contact_normal_stress_maximum {
+    /// Translates a maximum, which is at the depth z.
     pub(super) fn new(found: &Maximum, z: f64, grid: &Grid) -> contact_normal_stress_maximum {
         let Maximum { value, depth, ix, iy } = *found;
         let place = |k: usize, m: usize, d: f64| (k as f64 + 0.5 - 0.5 * m as f64) * d;
@@ -75,6 +76,7 @@ impl contact_normal_stress_maximum {
 }
 
 impl contact_normal_stress_outputs {
+    /// The stresses that have to be computed.
     pub(super) fn wanted(&self) -> Wanted {
         Wanted {
             components: self.stress.map(|stress| !stress.is_null()),
@@ -85,15 +87,15 @@ impl contact_normal_stress_outputs {
         }
     }
 
-    /// Adds the struct, and the outputs at n depths of all elements, to the regions.
+    /// Adds the struct at `address`, and the arrays for n depths below `elements` elements, to the regions.
     pub(super) fn add_to(
         &self,
         regions: &mut Regions,
-        at: *const contact_normal_stress_outputs,
+        address: *const contact_normal_stress_outputs,
         (n, elements): (usize, usize),
     ) -> Result<(), Refusal> {
         let count = n.saturating_mul(elements);
-        regions.input_struct(at, self)?;
+        regions.input_struct(address, self)?;
         for stress in self.stress {
             regions.output("stress", stress, count)?;
         }
@@ -104,10 +106,10 @@ impl contact_normal_stress_outputs {
             regions.output("directions", direction, count.saturating_mul(3))?;
         }
         let largest = [("largest_von_mises", self.largest_von_mises), ("largest_shear", self.largest_shear)];
-        for (name, at) in largest {
+        for (name, maximum) in largest {
             // SAFETY: NULL or a struct that declares its size, by the conventions of the ABI.
-            if let Some(given) = unsafe { structs::read_optional(at.cast_const(), name)? } {
-                regions.output_struct(at, &given)?;
+            if let Some(given) = unsafe { structs::read_optional(maximum.cast_const(), name)? } {
+                regions.output_struct(maximum, &given)?;
             }
         }
         Ok(())

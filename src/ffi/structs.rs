@@ -1,5 +1,5 @@
-//! Structs that grow. Each begins with its size in the caller's header, which its `_init` sets. Shorter structs, of an older header from 0.2 on, are
-//! accepted, and so are longer ones of a newer header if the members unknown here are 0.
+//! Structs of the ABI, which grow from version to version. Each begins with its size in the caller's header, which its `_init` sets. The library
+//! accepts shorter structs of an older header, from 0.2 on. It accepts longer structs of a newer header if the members that it does not know are 0.
 
 use std::mem::size_of;
 
@@ -12,25 +12,26 @@ use super::status::Refusal;
 /// `repr(C)`, begins with `struct_size: i64`, and every bit pattern is valid: integers, floats, raw pointers and
 /// optional function pointers only.
 pub unsafe trait Versioned: Copy {
-    /// Its name in C.
+    /// The name of the struct in C.
     const NAME: &'static str;
-    /// Its size in the first version that had it: never changes again.
+    /// The size of the struct in the first version that had it. This number never changes again.
     const FIRST_SIZE: usize;
-    /// The values that its `_init` writes. Members beyond the first size are 0: so a newer program that leaves them alone does not ask an older
-    /// library for anything.
+    /// The values that the `_init` of the struct writes. Members beyond the first size are 0, so a newer program that does not set them asks nothing
+    /// of an older library.
     fn defaults() -> Self;
 
-    /// Its name in messages.
+    /// The name of the struct in messages.
     fn short_name() -> &'static str {
         &Self::NAME["contact_normal_".len()..]
     }
 }
 
-/// Makes a struct [`Versioned`]. It must have `struct_size` first, and otherwise integers, floats, raw pointers and optional function pointers
-/// only. The arguments are its size in the first version that had it, its `_init` for Rust, and the defaults that are not 0 or NULL.
+/// Makes a struct [`Versioned`]. The struct must begin with `struct_size`, and otherwise have integers, floats, raw pointers and optional function
+/// pointers only. The arguments are the name of the struct, that of its `_init` for Rust, its size in the first version that had it, and the
+/// defaults that are not 0 or NULL.
 macro_rules! versioned {
     ($name:ident, $init:ident, $first_size:literal $(, $member:ident: $value:expr)* $(,)?) => {
-        // SAFETY: by the struct, see above.
+        // SAFETY: the struct keeps the rules above.
         unsafe impl $crate::ffi::structs::Versioned for $name {
             const NAME: &'static str = stringify!($name);
             const FIRST_SIZE: usize = $first_size;
@@ -58,10 +59,11 @@ macro_rules! versioned {
 }
 pub(super) use versioned;
 
-/// No struct of this library will be larger. Calls refuse longer ones; their `_init` sets no more than this.
+/// The largest size of a struct, in bytes, in this and all later versions. Calls refuse longer structs, and `_init` writes no more than this.
 pub(super) const LARGEST: usize = 4096;
 
-/// The declared size of a struct, after a check.
+/// The size that the caller declares of a struct. Refuses sizes that no version has, marks of the Fortran module, and members that are set but
+/// unknown to this library.
 pub(super) unsafe fn declared_size<T: Versioned>(from: *const T, name: &str) -> Result<usize, Refusal> {
     if from.is_null() {
         return Err(Refusal::null(name));
@@ -95,7 +97,7 @@ pub(super) unsafe fn declared_size<T: Versioned>(from: *const T, name: &str) -> 
     Ok(size)
 }
 
-/// Reads a struct; members that an older header does not have get their defaults.
+/// Reads a struct. Members that an older header does not have get their defaults.
 pub unsafe fn read<T: Versioned>(from: *const T, name: &str) -> Result<T, Refusal> {
     // SAFETY: the caller's pointer is NULL or points to a struct that declares its size.
     let size = unsafe { declared_size(from, name)? }.min(size_of::<T>());
@@ -105,20 +107,20 @@ pub unsafe fn read<T: Versioned>(from: *const T, name: &str) -> Result<T, Refusa
     Ok(value)
 }
 
-/// [`read`] with None for NULL.
+/// As [`read`], with None for NULL.
 pub unsafe fn read_optional<T: Versioned>(from: *const T, name: &str) -> Result<Option<T>, Refusal> {
     // SAFETY: by the caller.
     (!from.is_null()).then(|| unsafe { read(from, name) }).transpose()
 }
 
-/// The size that the caller declares of a struct that was read.
+/// The size that the caller declared of a struct, from the copy that [`read`] made.
 pub fn size_of_callers<T: Versioned>(value: &T) -> usize {
     // SAFETY: a Versioned begins with its size, which `read` copied.
     let declared = unsafe { (value as *const T).cast::<i64>().read() };
     usize::try_from(declared).unwrap_or(0)
 }
 
-/// Writes the members that the caller's header has; `struct_size` stays.
+/// Writes the members that the caller's header has. `struct_size` keeps its value.
 pub unsafe fn write<T: Versioned>(to: *mut T, value: &T) -> Result<(), Refusal> {
     // SAFETY: as in `read`.
     let size = unsafe { declared_size(to.cast_const(), T::NAME)? }.min(size_of::<T>());
@@ -134,29 +136,29 @@ pub unsafe fn write<T: Versioned>(to: *mut T, value: &T) -> Result<(), Refusal> 
     Ok(())
 }
 
-/// An array of the caller's structs, possibly of an older or newer version. The size of the first one is the distance from each to the next.
+/// An array of structs in the caller's memory, possibly of an older or newer version. Each struct takes the bytes that the first one declares.
 pub struct Rows<T> {
     first: *mut T,
     stride: usize,
 }
 
 impl<T: Versioned> Rows<T> {
-    /// `first`: NULL, which is refused, or a struct that declares its size.
+    /// The array that begins at `first`, which must be a struct that declares its size. NULL is refused.
     pub unsafe fn of(first: *mut T, name: &str) -> Result<Rows<T>, Refusal> {
         // SAFETY: by the caller.
         Ok(Rows { first, stride: unsafe { declared_size(first.cast_const(), name)? } })
     }
 
-    /// Bytes of `count` rows.
+    /// The bytes that `count` rows take.
     pub fn bytes(&self, count: usize) -> usize {
         self.stride.saturating_mul(count)
     }
 
-    /// Row `i`, if it declares the same size.
+    /// The address of row `i`. Refuses a row whose declared size differs from that of the first row.
     pub unsafe fn at(&self, i: usize, name: &str) -> Result<*mut T, Refusal> {
         // SAFETY: the caller's array has more than `i` rows.
         let row = unsafe { self.first.byte_add(i * self.stride) };
-        // SAFETY: likewise; each begins with its size.
+        // SAFETY: as above; each row begins with its size.
         let declared = unsafe { row.cast::<i64>().read_unaligned() };
         if declared != self.stride as i64 {
             let rule = format!("it must be {}, as that of the first of the array: call {}_init", self.stride, T::NAME);
@@ -165,7 +167,7 @@ impl<T: Versioned> Rows<T> {
         Ok(row)
     }
 
-    /// Writes all of row `i`, which needs no `_init`, with 0 into members that are unknown here.
+    /// Writes row `i`, and 0 into members that are unknown here. The row needs no `_init` before.
     pub unsafe fn write(&self, i: usize, value: &T) {
         let (stride, known) = (self.stride, self.stride.min(size_of::<T>()));
         // SAFETY (all): the caller's array has more than `i` rows of `stride` bytes, and a Versioned is bytes.
@@ -178,10 +180,10 @@ impl<T: Versioned> Rows<T> {
     }
 }
 
-/// Writes the defaults into a struct that has `size` bytes in the caller's header: no more than these, and 0 into members that are unknown here.
-/// NULL is ignored.
+/// Writes the defaults into a struct that has `size` bytes in the caller's header, and 0 into members that are unknown here. It writes no more than
+/// `size` bytes. NULL is ignored.
 pub unsafe fn init<T: Versioned>(to: *mut T, size: i64) {
-    // Every struct has an `_init`, so every struct is checked here: it may grow, never shrink below its first size.
+    // Every struct has an `_init`, so this checks every struct: a struct may grow, but never get smaller than in its first version.
     const { assert!(size_of::<T>() >= T::FIRST_SIZE && T::FIRST_SIZE % 8 == 0 && size_of::<T>() <= LARGEST) };
     let defaults = T::defaults();
     // SAFETY: a Versioned is bytes; NULL or `size` bytes, by the caller.
@@ -197,15 +199,16 @@ pub unsafe fn init_unknown(to: *mut u8, size: i64) {
     unsafe { init_bytes(to, &[], size) }
 }
 
+/// Writes `size` bytes: the declared size, the `defaults` after it, then 0.
 unsafe fn init_bytes(to: *mut u8, defaults: &[u8], size: i64) {
-    const SIZE: usize = size_of::<i64>();
-    // A size larger than that of all structs is cut here; the calls that read the struct refuse it.
+    const OF_SIZE: usize = size_of::<i64>();
+    // Of a larger struct than LARGEST only the first bytes are written. The calls that read such a struct refuse it.
     let room = usize::try_from(size).unwrap_or(0).min(LARGEST);
-    if to.is_null() || room < SIZE {
+    if to.is_null() || room < OF_SIZE {
         return;
     }
     let known = defaults.len().min(room);
-    // SAFETY: `room` bytes of the caller's.
+    // SAFETY: the caller's struct has `room` bytes or more.
     unsafe {
         to.write_bytes(0, room);
         to.copy_from_nonoverlapping(defaults.as_ptr(), known);

@@ -1,4 +1,4 @@
-//! `contact_normal_visco`.
+//! `contact_normal_visco`, and the results of a step in time.
 
 use super::arguments::{count, required, switch, unknown, GivenEffect, Regions};
 use super::status::Refusal;
@@ -7,35 +7,36 @@ use crate::grid::Grid;
 use crate::scene::{Branches, Visco};
 use crate::visco::{Form, Report, MOST_BRANCHES};
 
-/// `form`: RELAXATION where the approach is given, CREEP where the force is.
+/// `form`: RELAXATION if the approach is prescribed, CREEP if the force is.
 pub const CONTACT_NORMAL_FORM_AUTO: i32 = 0;
-/// `form`: displacements are linear in the step; second order. Exact where the approach is held, and one body is rigid or both relax alike.
+/// `form`: displacements are linear in time during the step; second order. Exact for a constant approach, if one body is rigid or both relax alike.
 pub const CONTACT_NORMAL_FORM_RELAXATION: i32 = 1;
-/// `form`: pressures are linear in the step; second order, exact where they are held.
+/// `form`: pressures are linear in time during the step; second order. Exact for constant pressures.
 pub const CONTACT_NORMAL_FORM_CREEP: i32 = 2;
-/// `form`: backward Euler; first order, to compare with programs that have it.
+/// `form`: backward Euler, first order, for a comparison with programs that use it.
 pub const CONTACT_NORMAL_FORM_BACKWARD_EULER: i32 = 3;
 
-/// Effect: bodies that relax, and a step of `time_step` of them. The `shear_modulus` of the scene is that at once, and falls to
-/// `G(t) = G - sum of modulus (1 - exp(-t/time))` at a constant Poisson ratio; of a coated body it is that of the coating, on a rigid body. A
-/// solver handle remembers the steps before: the first step has `continues` 0, the others 1. `displacement` and `deformed_distance` contain what is
-/// left of the steps before. A step that stops early counts as a step. See docs/visco.md.
+/// Effect: viscoelastic bodies, which relax, and a step in time of duration `time_step`. The `shear_modulus` of the scene is the instantaneous one.
+/// It falls to `G(t) = G - sum of modulus (1 - exp(-t/time))` at a constant Poisson ratio. The branches of a coated body are those of the coating,
+/// and the body below must be rigid. A solver handle keeps the history of the steps: the first step has `continues` 0, the others 1. `displacement`
+/// and `deformed_distance` contain the displacements that earlier steps left. A step that stops early counts as a step. See docs/visco.md.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_visco {
     /// Set by `contact_normal_visco_init`.
     pub struct_size: i64,
-    /// Branches of body 1 and body 2, 0 (default: an elastic body) to 32.
+    /// The number of branches of body 1 and of body 2: 0 (default: an elastic body) to 32.
     pub branches: [i32; 2],
-    /// Moduli of the branches of each body, pressures >= 0 that add up to at most its shear modulus. Default NULL: to be set where there are branches.
+    /// The moduli of the branches of each body, pressures >= 0 whose sum is at most the body's shear modulus. Default NULL: to be set if there are
+    /// branches.
     pub modulus: [*const f64; 2],
-    /// Relaxation times of the branches, > 0. Default NULL: to be set where there are branches.
+    /// The relaxation times of the branches of each body, > 0. Default NULL: to be set if there are branches.
     pub time: [*const f64; 2],
-    /// Time of the step, >= 0; default 0: the load jumps, and the bodies give way at once.
+    /// The duration of the step, >= 0; default 0: the load jumps, and the bodies respond instantaneously.
     pub time_step: f64,
     /// CONTACT_NORMAL_FORM_...; default AUTO.
     pub form: i32,
-    /// 1: the step begins where the last one of the solver ended; 0 (default): at rest, at time 0.
+    /// 1: the step begins where the last step of the solver ended; 0 (default): the bodies are at rest before, at time 0.
     pub continues: i32,
 }
 
@@ -70,7 +71,7 @@ impl contact_normal_visco {
         Ok(Visco { bodies, time_step: self.time_step, form, continues })
     }
 
-    /// Values that are read of a body.
+    /// The number of moduli and of times that are read of a body: none if `branches` is refused.
     fn values(&self, b: usize) -> usize {
         usize::try_from(self.branches[b]).ok().filter(|branches| *branches <= MOST_BRANCHES).unwrap_or(0)
     }
@@ -90,13 +91,14 @@ impl GivenEffect for contact_normal_visco {
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct contact_normal_report_visco {
-    /// Since the bodies were at rest: the sum of the steps.
+    /// The time since the bodies were at rest: the sum of the time steps.
     pub time: f64,
-    /// How far this step may be off: the difference between its form and another one, rms of the displacements in contact relative to that of h - approach.
+    /// An estimate of the error of this step: the difference of the displacements in contact between the form of the step and another form, rms,
+    /// relative to the rms of h - approach.
     pub step_error: f64,
-    /// The same of all steps since the bodies were at rest, added up: how far the result may be off. 0 without contact.
+    /// An estimate of the error of the result: the sum of the errors of all steps since the bodies were at rest. 0 without contact.
     pub time_error: f64,
-    /// The compliance of the bodies in the step, relative to that at once.
+    /// The compliance of the bodies in the step, relative to the instantaneous one.
     pub compliance: f64,
     /// Room for later versions: 0.
     pub reserved: [f64; 4],

@@ -1,4 +1,4 @@
-//! `contact_normal_frictional_wear`.
+//! `contact_normal_frictional_wear`: frictional work and wear from tractions and slips.
 
 use super::arguments::{copy_to, count, optional, required, Regions};
 use super::guard::guard;
@@ -8,7 +8,8 @@ use crate::effects::Each;
 use crate::grid::Grid;
 use crate::wear::{frictional_wear, Wear, Worn};
 
-/// Tractions and slips of a solve with friction, and how easily the surfaces wear: depth = K/H times the frictional work, or K/H p |s|.
+/// The tractions and slips of a solve with friction, and the constants of wear. The depth of wear is K/H times the frictional work per area, or K/H p
+/// |s|.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_wear {
@@ -18,26 +19,26 @@ pub struct contact_normal_wear {
     pub mx: i32,
     /// Elements in y. Default 0: to be set.
     pub my: i32,
-    /// Length of an element in x. Default 0: to be set.
+    /// Element size in x. Default 0: to be set.
     pub dx: f64,
-    /// In y. Default 0: to be set.
+    /// Element size in y. Default 0: to be set.
     pub dy: f64,
-    /// Tractions q on body 1, in x and y, `[my][mx]` each, as `fields->traction` has them. Default NULL: to be set.
+    /// The tractions q on body 1 in x and in y, `[my][mx]` each, as in `fields->traction`. Default NULL: to be set.
     pub traction: [*const f64; 2],
-    /// The slip s of a step, in x and y, a length, as `fields->slip` has it. Default NULL: to be set.
+    /// The slip s of a step in x and in y, a length, `[my][mx]` each, as in `fields->slip`. Default NULL: to be set.
     pub slip: [*const f64; 2],
-    /// Pressures, `[my][mx]`: the depth is K/H p |s| (Archard 1953). NULL (default): K/H times the frictional work.
+    /// The pressures, `[my][mx]`: the depth is K/H p |s| (Archard 1953). NULL (default): the depth is K/H times the frictional work.
     pub pressure: *const f64,
-    /// K, the wear coefficient, a number. Default 0: nothing wears, and only the work is computed.
+    /// The wear coefficient K, a number without a unit. Default 0: there is no wear, and only the work is computed.
     pub coefficient: f64,
-    /// K of each element, `[my][mx]`, in the place of `coefficient`. Default NULL: the same everywhere.
+    /// The wear coefficient K of each element, `[my][mx]`, in place of `coefficient`. Default NULL: K is uniform.
     pub coefficients: *const f64,
-    /// H, the hardness, a pressure. Default 1: the coefficient is K/H, a volume per energy.
+    /// The hardness H, a pressure. Default 1: `coefficient` is K/H, a volume per energy.
     pub hardness: f64,
-    /// How many steps `work` and `depth` are those of, any number of 0 or more: L/dq for a length L that is rolled by steps of dq; V/dq makes the work a power.
-    /// Default 1.
+    /// The number of steps to which `work` and `depth` refer, any number >= 0; default 1. L/dq: a length L that is rolled in steps of dq. V/dq, with
+    /// the velocity V: work and depth per time.
     pub steps: f64,
-    /// dq, the length of a step that rolls along x, as `friction->rolling_distance` has it (there 0 is dx); needed for `passage` only. Default 0: not set.
+    /// The length dq of a step of rolling along x, as `friction->rolling_distance` (whose 0 means dx); needed for `passage` only. Default 0: not set.
     pub rolling_distance: f64,
 }
 
@@ -51,19 +52,19 @@ pub struct contact_normal_worn {
     pub struct_size: i64,
     /// The frictional work of all elements, an energy.
     pub work: f64,
-    /// The material that wears off, a volume.
+    /// The volume of the worn material.
     pub volume: f64,
-    /// The largest depth, a length.
+    /// The largest depth of wear, a length.
     pub largest_depth: f64,
-    /// Where that is in x, from the middle of the grid.
+    /// The place of the largest depth in x, from the middle of the grid.
     pub x: f64,
-    /// And in y.
+    /// The place of the largest depth in y, from the middle of the grid.
     pub y: f64,
 }
 
 versioned! { contact_normal_worn, contact_normal_worn_init, 48 }
 
-/// The arrays of the results; NULL: not wanted.
+/// The caller's arrays for the results; NULL: not wanted.
 struct Wanted {
     work: *mut f64,
     depth: *mut f64,
@@ -71,7 +72,8 @@ struct Wanted {
 }
 
 impl Wanted {
-    fn regions(&self, mut regions: Regions, given: &contact_normal_wear, grid: &Grid) -> Result<(), Refusal> {
+    /// Adds all arrays to the regions and checks these. Refuses `passage` without the length of a step.
+    fn check(&self, mut regions: Regions, given: &contact_normal_wear, grid: &Grid) -> Result<(), Refusal> {
         let n = grid.len();
         regions.input("wear->traction[0]", given.traction[0], n)?;
         regions.input("wear->traction[1]", given.traction[1], n)?;
@@ -99,11 +101,13 @@ impl Wanted {
     }
 }
 
-/// Frictional work and wear of each element, from what a solve with friction returned: a host takes `depth` off its surface, or adds it to the
-/// undeformed distance. `work`, `depth`: `[my][mx]`, an energy per area and a length, of `steps` steps. `passage`: `[my]`, the depth that a point of
-/// a surface which rolls along x loses while it passes through the contact once. `worn`: the sums. NULL: not wanted. The work of an element is
-/// -(q . s), so that their sum is what the motion puts in less what is stored; where elements stick it is 0 to the tolerance, of either sign.
-/// INVALID_ARGUMENT, NOT_FINITE: numbers out of their range, results out of the range of doubles. Since 0.2.
+/// Computes the frictional work and the wear of each element from the result of a solve with friction. The calling program may remove `depth` from
+/// its surface, or add it to the undeformed distance.
+///
+/// `work` and `depth` `[my][mx]`: the work, an energy per area, and the depth of wear, a length, of `steps` steps. `passage` `[my]`: the depth that a
+/// point of a surface which rolls along x loses while it passes through the contact once. `worn`: the sums. NULL: not wanted. The work of an element
+/// is -(q . s); the sum is the work of the motion minus the change of the stored energy. The work of an element that sticks is 0 to the tolerance, of
+/// either sign. INVALID_ARGUMENT, NOT_FINITE: numbers are out of their range, or results beyond the range of doubles. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_frictional_wear(
     wear: *const contact_normal_wear,
@@ -118,14 +122,14 @@ pub unsafe extern "C" fn contact_normal_frictional_wear(
             let given = structs::read(wear, "wear")?;
             let (mx, my) = (count("wear->mx", given.mx)?, count("wear->my", given.my)?);
             let grid = Grid::new(mx, my, given.dx, given.dy)?;
-            let written = structs::read_optional(worn.cast_const(), "worn")?;
+            let given_worn = structs::read_optional(worn.cast_const(), "worn")?;
             let mut regions = Regions::default();
             regions.input_struct(wear, &given)?;
-            if let Some(written) = &written {
-                regions.output_struct(worn, written)?;
+            if let Some(given_worn) = &given_worn {
+                regions.output_struct(worn, given_worn)?;
             }
             let wanted = Wanted { work, depth, passage };
-            wanted.regions(regions, &given, &grid)?;
+            wanted.check(regions, &given, &grid)?;
             let n = grid.len();
             let traction = [
                 required("wear->traction[0]", given.traction[0], n)?,
@@ -143,7 +147,7 @@ pub unsafe extern "C" fn contact_normal_frictional_wear(
                 rolling_distance: given.rolling_distance,
             })?;
             wanted.write(&found);
-            if let Some(mut value) = written {
+            if let Some(mut value) = given_worn {
                 (value.work, value.volume, value.largest_depth) = (found.total_work, found.volume, found.largest);
                 [value.x, value.y] = grid.place(found.at);
                 structs::write(worn, &value)?;

@@ -5,14 +5,15 @@ use crate::ffi::structs::Versioned;
 /// An argument of a call.
 #[derive(Clone, Copy)]
 pub(in crate::ffi) enum Argument {
-    /// A struct of this name.
+    /// A pointer to a struct: the name of the struct, and the address.
     Struct(&'static str, usize),
-    /// Numbers.
+    /// A pointer to numbers: the address.
     Array(usize),
+    /// A number.
     Integer(i64),
 }
 
-/// The kinds of arguments.
+/// The types that arguments have.
 pub(in crate::ffi) trait Given {
     fn given(self) -> Argument;
 }

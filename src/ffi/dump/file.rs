@@ -1,4 +1,4 @@
-//! The file of a dump: its name, and how it is written.
+//! Writes the file of a dump.
 
 use std::fs::{remove_file, rename, File};
 use std::io::Write;
@@ -7,12 +7,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::image::Image;
 
-/// Dumps of this process so far.
+/// The number of dumps of this process so far.
 static COUNT: AtomicU64 = AtomicU64::new(0);
-/// Most names that are tried for an unfinished file.
+/// The largest number of names that are tried for an unfinished file.
 const MOST_ATTEMPTS: usize = 100;
 
-/// Writes a file under a temporary name, then renames it, so that no reader finds an unfinished file. Returns its path, or the reason of the failure.
+/// Writes a file under a temporary name, then renames it, so that no reader finds an unfinished file. Returns the path, or the reason of a failure.
 pub(super) fn write(path: &[u8], head: &str, image: &Image) -> Result<String, String> {
     let number = COUNT.fetch_add(1, Ordering::Relaxed) + 1;
     let path = expanded(path, number);
@@ -24,14 +24,14 @@ pub(super) fn write(path: &[u8], head: &str, image: &Image) -> Result<String, St
     let (part, file) = new_part(&path, number).map_err(failed)?;
     let written = write_to(file, head, image).and_then(|()| rename(&part, &path));
     written.map(|()| path.display().to_string()).map_err(|why| {
-        // An error here changes nothing of the reason that is returned.
+        // If the unfinished file cannot be removed either, the first reason is the one to report.
         let _ = remove_file(&part);
         failed(why)
     })
 }
 
-/// A new file beside `path` for dump `number`, and its path. A process of another machine or container may have the same process number, and its
-/// unfinished file the same name: such a name is left out.
+/// Makes a new file in the folder of `path` for the unfinished dump `number`. Returns the path of the file, and the file. It tries another name if a
+/// file of that name exists: a process of another machine or container may have the same process number.
 fn new_part(path: &Path, number: u64) -> std::io::Result<(PathBuf, File)> {
     let mut made = Err(std::io::ErrorKind::AlreadyExists.into());
     for attempt in 0..MOST_ATTEMPTS {
@@ -44,7 +44,8 @@ fn new_part(path: &Path, number: u64) -> std::io::Result<(PathBuf, File)> {
     made
 }
 
-/// The target of a link, otherwise the path itself. Refuses a place that is not a file: a device or a pipe would be replaced.
+/// The path to write: the target if `path` is a link, otherwise `path`. Refuses a path that exists and is no file: a device or a pipe would be
+/// replaced.
 fn place(path: PathBuf) -> Result<PathBuf, String> {
     if path.file_name().is_none() {
         return Err(format!("{} names no file", path.display()));
@@ -78,7 +79,7 @@ fn write_to(mut file: File, head: &str, image: &Image) -> std::io::Result<()> {
     file.sync_all()
 }
 
-/// %p is the number of the process, %n that of the dump, %% a %.
+/// Replaces %p in the path by the number of the process, %n by the `number` of the dump, and %% by %.
 fn expanded(path: &[u8], number: u64) -> PathBuf {
     let (mut bytes, mut rest) = (Vec::new(), path);
     while let Some((&first, after)) = rest.split_first() {

@@ -1,7 +1,8 @@
-//! `options->dump`: the arguments of a call that fails, written to a file, and read again by `contact-normal-replay`.
+//! Dumps: the arguments of a call that fails are written to the file that `options->dump` names. `contact-normal-replay` reads the file and makes the
+//! call again. docs/dump.md has the format.
 //!
-//! No line here belongs to one effect. Structs are written by the list of their members, which is made from the header. Arrays have the lengths that
-//! the call has registered in `Regions`. So a new effect or member is in the file without a change here. docs/dump.md has the format.
+//! Structs are written by the list of their members (`members.rs`), which is made from the header. Arrays are written with the lengths that the call
+//! has registered in `Regions`. So a new effect or member gets into the file without a change here.
 
 mod argument;
 mod file;
@@ -31,16 +32,18 @@ use image::Image;
 /// The first line of a file: the format and its version.
 const FIRST_LINE: &str = "contact-normal dump 1";
 
-/// The state of the interface's particles, of a handle.
+// Names in the file of arrays that a handle has from earlier steps.
+
+/// The coefficients of friction and the yield limits of the particles of the interface.
 const PARTICLES: [&str; 2] = ["handle.friction_coefficient", "handle.yield_limit"];
 
-/// The history of bodies that relax, of a handle.
+/// The history of viscoelastic bodies.
 const HISTORY: &str = "handle.history";
 
 /// The pressures of the last step of unlike bodies.
 const PRESSURE_BEFORE: &str = "handle.pressure_before";
 
-/// The name of the tangential coefficients of a handle.
+/// The caller's tangential influence coefficients.
 const TANGENTIAL_TABLES: [&str; 5] = [
     "handle.tangential_xx",
     "handle.tangential_yy",
@@ -49,11 +52,11 @@ const TANGENTIAL_TABLES: [&str; 5] = [
     "handle.tangential_yz",
 ];
 
-/// The names of the tangential coefficients per loaded row of a handle.
+/// The caller's tangential influence coefficients per loaded row.
 const TANGENTIAL_ROW_TABLES: [&str; 3] =
     ["handle.tangential_rows_xx", "handle.tangential_rows_yy", "handle.tangential_rows_xy"];
 
-/// The arguments of a call, each with its name.
+/// Lists the arguments of a call, each with its name.
 macro_rules! given {
     ($($name:ident),+ $(,)?) => {
         &[$((stringify!($name), $crate::ffi::dump::Given::given($name))),+]
@@ -61,17 +64,19 @@ macro_rules! given {
 }
 pub(super) use given;
 
-/// The arguments of a call, kept until it is known how the call ends.
+/// A copy of the arguments of a call, which exists until the call ends.
 pub(super) struct Recording<'a> {
+    /// The name of the function that is called.
     call: &'static str,
     arguments: &'a [(&'static str, Argument)],
-    /// The path as the caller has it; none: nothing is kept.
+    /// The path in the caller's options. None: no dump is wanted, and nothing is copied.
     path: Option<Vec<u8>>,
+    /// The copy. None: nothing is copied yet.
     image: Option<Image>,
 }
 
 impl<'a> Recording<'a> {
-    /// `options`: NULL or a struct that declares its size. The call itself reports its errors.
+    /// Reads the path from `options`, which is NULL or a struct that declares its size. If the options cannot be read, the call itself reports that.
     pub unsafe fn new(
         call: &'static str,
         options: *const contact_normal_options,
@@ -85,12 +90,12 @@ impl<'a> Recording<'a> {
         Recording { call, arguments, path, image: None }
     }
 
-    /// Whether something is kept.
+    /// Whether the caller wants a dump if the call fails.
     pub fn is_wanted(&self) -> bool {
         self.path.is_some()
     }
 
-    /// Keeps the arguments of the call; `regions` has the lengths of its arrays. Later calls of this function change nothing.
+    /// Copies the arguments of the call; `regions` has the lengths of the arrays. Later calls of this method change nothing.
     pub fn keep(&mut self, regions: &Regions) {
         if self.is_wanted() && self.image.is_none() {
             // SAFETY: the caller's structs and arrays, by the conventions of the ABI.
@@ -98,7 +103,7 @@ impl<'a> Recording<'a> {
         }
     }
 
-    /// Keeps the arguments as [`keep`](Self::keep), with the set-up of the handle that solves, and its last result if the call `goes_on` from that.
+    /// As [`keep`](Self::keep), with the set-up of the handle that solves. If the call `goes_on` from the handle's last result, copies that as well.
     pub fn keep_with(&mut self, regions: &Regions, solver: &Solver, goes_on: bool) {
         if !self.is_wanted() || self.image.is_some() {
             return;
@@ -121,21 +126,21 @@ impl<'a> Recording<'a> {
         }
     }
 
-    /// Keeps the undeformed distance that the caller's surface has written for a grid.
+    /// Copies the undeformed distance that the caller's surface callback has written for a grid.
     pub fn keep_surface(&mut self, mx: usize, my: usize, h: &[f64]) {
         if let Some(image) = &mut self.image {
             image.add_doubles(&format!("surface.{mx}x{my}"), h);
         }
     }
 
-    /// Writes the file of a call that failed, and adds its path to the message.
+    /// Called at the end of a call. If the call failed, writes the file and adds the path to the message.
     fn end(&mut self, ended: Result<contact_normal_status, Refusal>) -> Result<contact_normal_status, Refusal> {
         match ended {
             Ok(status) if self.is_wanted() && status != CONTACT_NORMAL_OK => {
                 let message = last_error_text();
-                let more = self.finish(status, &message);
-                if !more.is_empty() {
-                    set_last_error(&(message + &more));
+                let about_dump = self.finish(status, &message);
+                if !about_dump.is_empty() {
+                    set_last_error(&(message + &about_dump));
                 }
                 Ok(status)
             }
@@ -147,7 +152,7 @@ impl<'a> Recording<'a> {
         }
     }
 
-    /// Writes the file of a call that failed. Returns a sentence for its message; none if no file is wanted.
+    /// Writes the file of a call that failed. Returns a sentence for the message of the call; an empty one if no file is wanted.
     pub fn finish(&mut self, status: contact_normal_status, message: &str) -> String {
         let Some(path) = self.path.take() else { return String::new() };
         if status == CONTACT_NORMAL_OK || status == CONTACT_NORMAL_CANCELLED {
@@ -171,23 +176,23 @@ impl<'a> Recording<'a> {
 }
 
 impl Image {
-    /// The tangential coefficients of a handle.
+    /// Adds the caller's tangential influence coefficients, which a handle keeps.
     fn add_tables(&mut self, tables: &TangentialInfluence<'_>) {
         let (cx, cy, scale) = (tables.cx as i32, tables.cy as i32, tables.scale);
         let values: Vec<_> = tables.coefficients.into_iter().chain(tables.cross.into_iter().flatten()).collect();
         if tables.by_row {
-            let of =
+            let with =
                 |coefficients| contact_normal_row_tables { cx, rows: cy, coefficients, scale, ..Default::default() };
-            self.add_structs(&TANGENTIAL_ROW_TABLES, &values, of);
+            self.add_structs(&TANGENTIAL_ROW_TABLES, &values, with);
         } else {
-            let of = |coefficients| contact_normal_influence { cx, cy, coefficients, scale, ..Default::default() };
-            self.add_structs(&TANGENTIAL_TABLES, &values, of);
+            let with = |coefficients| contact_normal_influence { cx, cy, coefficients, scale, ..Default::default() };
+            self.add_structs(&TANGENTIAL_TABLES, &values, with);
         }
     }
 
-    /// Adds a struct for each table, which points to it.
-    fn add_structs<S: Versioned>(&mut self, names: &[&str], tables: &[&[f64]], of: impl Fn(*const f64) -> S) {
-        let structs: Vec<S> = tables.iter().map(|values| of(values.as_ptr())).collect();
+    /// Adds each table, and the struct `with(address of the table)` that points to the table.
+    fn add_structs<S: Versioned>(&mut self, names: &[&str], tables: &[&[f64]], with: impl Fn(*const f64) -> S) {
+        let structs: Vec<S> = tables.iter().map(|values| with(values.as_ptr())).collect();
         let mut regions = Regions::default();
         for values in tables {
             let name = "the tangential coefficients of the handle";
@@ -199,12 +204,12 @@ impl Image {
         unsafe { self.add(&named, &regions) };
     }
 
-    /// The last result of a handle.
+    /// Adds the last result of a handle: pressures, contact area, history and tractions.
     fn add_result(&mut self, solver: &Solver) {
         if solver.has_solved() {
             let state = solver.state();
             self.add_doubles("handle.pressure", &state.p);
-            // Elements at their limit, too: a start takes the pressures of these elements alone.
+            // With the elements at their pressure limit: an initial guess takes the pressures of these elements only.
             self.add_integers("handle.contact", &mut (0..state.p.len()).map(|i| i32::from(state.touches(i))));
         }
         if let Some(history) = solver.history() {
@@ -230,7 +235,7 @@ impl Image {
     }
 }
 
-/// Guards a call as [`guard`](super::guard::guard) does, and writes its `arguments` to a file if it fails: see [`Recording`].
+/// Calls `body` in a guard, as [`guard`](super::guard::guard) does. If the call fails, writes the `arguments` to the file that `options` names.
 pub(super) unsafe fn recorded(
     call: &'static str,
     options: *const contact_normal_options,

@@ -1,17 +1,17 @@
-//! The text of a dump. Nothing in it is trusted: any mistake is an error that names its line.
+//! Reads the text of a dump. The text is not trusted: any mistake in it becomes an error that names the line.
 
 use super::image::UNREAD;
 use super::FIRST_LINE;
 use crate::ffi::member::{Kind, Place, Struct};
 use crate::ffi::members::structure;
 
-/// The target of a pointer of a file.
+/// The target of a pointer in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Target {
     Null,
-    /// A target that is not in the file.
+    /// A struct or an array that the file does not contain.
     Unread,
-    /// The item of this index.
+    /// The item of this index, which counts from 0.
     Item(usize),
 }
 
@@ -22,31 +22,27 @@ pub(super) enum Value {
     Int64(i64),
     Double(f64),
     Pointer(Target),
-    /// Whether the host had set the member.
+    /// Whether the calling program had set the member: a callback, or a pointer that only this program can interpret.
     OfTheHost(bool),
 }
 
 /// A struct or an array that has a number in a file.
 #[derive(Debug)]
 pub(super) enum Item {
+    /// A struct, or an array of structs of which the file has the first one.
     Struct {
         kind: &'static Struct,
+        /// The bytes to allocate.
         room: usize,
         members: Vec<(Place, Value)>,
     },
-    /// `count` values of `size` bytes each, from byte `at` of the data on.
-    Array {
-        size: usize,
-        count: usize,
-        at: usize,
-    },
-    /// Bytes that the call writes.
-    Output {
-        bytes: usize,
-    },
+    /// `count` values of `size` bytes each. They begin at byte `first_byte` of the data.
+    Array { size: usize, count: usize, first_byte: usize },
+    /// An array of so many bytes that the call writes and does not read.
+    Output { bytes: usize },
 }
 
-/// The contents of a dump by its text.
+/// What the text of a dump says.
 #[derive(Debug, Default)]
 pub(super) struct Parsed {
     pub library: String,
@@ -56,11 +52,11 @@ pub(super) struct Parsed {
     pub arguments: Vec<(String, Target)>,
     pub integers: Vec<(String, i64)>,
     pub items: Vec<Item>,
-    /// Bytes of the arrays so far.
+    /// The bytes that the arrays so far take in the data.
     data: usize,
 }
 
-/// Reads the text; returns the bytes behind it, too.
+/// Reads the text of a dump. Returns its contents, and the bytes after the text, which are the data of the arrays.
 pub(super) fn parse(bytes: &[u8]) -> Result<(Parsed, &[u8]), String> {
     let (mut parsed, mut rest, mut number) = (Parsed::default(), bytes, 0);
     loop {
@@ -77,23 +73,24 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(Parsed, &[u8]), String> {
         let refuse = |why: String| format!("line {number}: {why}");
         let (word, said) = line.split_once(' ').ok_or_else(|| refuse("a word alone".into()))?;
         if word == "data" {
-            let told = said.parse().map_err(|_| refuse("no number of bytes".into()))?;
-            if parsed.data != told || rest.len() != told {
+            let declared = said.parse().map_err(|_| refuse("no number of bytes".into()))?;
+            if parsed.data != declared || rest.len() != declared {
                 let (arrays, found) = (parsed.data, rest.len());
-                return Err(format!("the arrays take {arrays} bytes, the text says {told}, and there are {found}"));
+                return Err(format!("the arrays take {arrays} bytes, the text says {declared}, and there are {found}"));
             }
             return Ok((parsed, rest));
         }
-        parsed.take(word, said).map_err(refuse)?;
+        parsed.read_line(word, said).map_err(refuse)?;
     }
 }
 
-/// The `number`-th word of a line, converted to `T`.
+/// Word `number` of a line (counted from 0, without the first word), converted to `T`.
 fn word<T: std::str::FromStr>(said: &str, number: usize) -> Result<T, String> {
     let word = said.split(' ').nth(number).ok_or("a word is missing")?;
     word.parse().map_err(|_| format!("what is \"{word}\"?"))
 }
 
+/// Word `number` of a line, as the target of a pointer.
 fn target(said: &str, number: usize) -> Result<Target, String> {
     match word::<String>(said, number)?.as_str() {
         "NULL" => Ok(Target::Null),
@@ -106,7 +103,8 @@ fn target(said: &str, number: usize) -> Result<Target, String> {
 }
 
 impl Parsed {
-    fn take(&mut self, first: &str, said: &str) -> Result<(), String> {
+    /// Reads a line: its first word, and the rest.
+    fn read_line(&mut self, first: &str, said: &str) -> Result<(), String> {
         match first {
             "library" => self.library = said.into(),
             "call" => self.call = said.into(),
@@ -116,7 +114,7 @@ impl Parsed {
             "integer" => self.integers.push((word(said, 0)?, word(said, 1)?)),
             "struct" | "array" | "output" => {
                 let item = self.item(first, said)?;
-                // Items are numbered in their order, so that no number is missing or used twice.
+                // Items are numbered from 1 in the order of their lines, so that no number is missing or used twice.
                 if word::<usize>(said, 0)? != self.items.len() + 1 {
                     return Err(format!("it must be number {}", self.items.len() + 1));
                 }
@@ -127,6 +125,7 @@ impl Parsed {
         Ok(())
     }
 
+    /// Reads the line of a struct, an array or an output.
     fn item(&mut self, first: &str, said: &str) -> Result<Item, String> {
         let name: String = word(said, 1)?;
         match first {
@@ -141,14 +140,15 @@ impl Parsed {
                     "int32" => 4,
                     _ => return Err(format!("what is an array of {name}?")),
                 };
-                let (count, at) = (word(said, 2)?, self.data);
+                let (count, first_byte) = (word(said, 2)?, self.data);
                 let bytes = size.checked_mul(count).and_then(|bytes| bytes.checked_next_multiple_of(8));
-                self.data = bytes.and_then(|bytes| at.checked_add(bytes)).ok_or("an array without end")?;
-                Ok(Item::Array { size, count, at })
+                self.data = bytes.and_then(|bytes| first_byte.checked_add(bytes)).ok_or("an array without end")?;
+                Ok(Item::Array { size, count, first_byte })
             }
         }
     }
 
+    /// Reads the line of a member of the last struct.
     fn member(&mut self, first: &str, said: &str) -> Result<(), String> {
         let name: String = word(said, 0)?;
         let Some(Item::Struct { kind, members, .. }) = self.items.last_mut() else {
@@ -173,7 +173,7 @@ impl Parsed {
     }
 }
 
-/// The message from its line in the file, which has the characters `\` and `n` for the end of a line, and `\\` for a backslash.
+/// The message from its line in the file: the line has `\n` (two characters) for the end of a line, and `\\` for a backslash.
 fn unescaped(said: &str) -> String {
     let (mut text, mut characters) = (String::new(), said.chars());
     while let Some(character) = characters.next() {

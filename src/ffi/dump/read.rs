@@ -1,4 +1,4 @@
-//! A dump that was read: structs and arrays in memory again, which point to each other as they did.
+//! A dump that was read: the structs and arrays of the call are in memory again, and point to each other as before.
 
 use std::ops::Range;
 
@@ -9,21 +9,23 @@ use crate::ffi::options::contact_normal_options;
 use crate::ffi::scene::contact_normal_scene;
 use crate::ffi::structs::{Versioned, LARGEST};
 
-/// Bytes that the calls of a file may write at most.
+/// The largest memory in bytes that a file may ask for besides its own data: the results of the call.
 const MOST_BYTES: usize = 1 << 32;
 
-/// The arguments of a call and its end: the file of `options->dump`.
+/// The file of `options->dump`: the arguments of a call, its status and its message.
 ///
-/// A file is not trusted. The memory of the call has the lengths of the file, and the call is refused before it reads or writes beyond it.
+/// A file is not trusted. The structs and arrays have the lengths that the file says, and a call is refused before it reads or writes beyond them.
 pub struct Dump {
     parsed: Parsed,
-    /// The memory of each item, in words: every value is aligned. Calls write into it, so it is used by the pointers below.
+    /// The memory of each item, in words of 8 bytes, so that every value is aligned. Because calls write into this memory, it is used through
+    /// `starts` only.
     memory: Vec<Vec<u64>>,
+    /// The address of the memory of each item.
     starts: Vec<*mut u64>,
 }
 
 impl Dump {
-    /// Reads the bytes of a file. An error tells why this version cannot read them.
+    /// Reads the bytes of a file. The error says why this version cannot read them.
     pub fn read(bytes: &[u8]) -> Result<Dump, String> {
         let (parsed, data) = parse(bytes)?;
         let sizes: Vec<usize> = parsed.items.iter().map(room).collect();
@@ -32,11 +34,11 @@ impl Dump {
         if total.is_none_or(|total| total > data_room) {
             return Err(format!("it asks for more than {MOST_BYTES} bytes of results"));
         }
-        // Zeros come from the system, which gives pages only when they are used.
+        // The system provides pages of zeros only when they are used, so outputs cost memory only where the call writes.
         let mut memory: Vec<Vec<u64>> = sizes.iter().map(|size| vec![0; size.div_ceil(8)]).collect();
         for (item, to) in parsed.items.iter().zip(&mut memory) {
-            if let Item::Array { size, count, at } = item {
-                copy(&data[*at..][..size * count], *size, to);
+            if let Item::Array { size, count, first_byte } = item {
+                copy(&data[*first_byte..][..size * count], *size, to);
             }
         }
         let starts = memory.iter_mut().map(|words| words.as_mut_ptr()).collect();
@@ -45,55 +47,56 @@ impl Dump {
         Ok(dump)
     }
 
-    /// The function that was called.
+    /// The name of the function that was called.
     pub fn call(&self) -> &str {
         &self.parsed.call
     }
 
-    /// The version of the library that wrote it.
+    /// The version of the library that wrote the file.
     pub fn library(&self) -> &str {
         &self.parsed.library
     }
 
-    /// The status that the call ended with.
+    /// The status with which the call ended.
     pub fn status(&self) -> i32 {
         self.parsed.status
     }
 
-    /// Its message.
+    /// The message with which the call ended.
     pub fn message(&self) -> &str {
         &self.parsed.message
     }
 
-    /// The scene of the call; its pointers are valid as long as the dump.
+    /// The scene of the call. The pointers in it are valid as long as the dump exists.
     pub fn scene(&self) -> Option<&contact_normal_scene> {
         self.structure("scene")
     }
 
-    /// The options of the call, likewise. Callbacks and their data, which belonged to the host, are NULL.
+    /// The options of the call, with pointers as in [`Dump::scene`]. Callbacks and their data, which belonged to the calling program, are NULL.
     pub fn options(&self) -> Option<&contact_normal_options> {
         self.structure("options")
     }
 
-    /// The struct of the arrays of the call, likewise.
+    /// The `fields` of the call, with pointers as in [`Dump::scene`].
     pub fn fields(&self) -> Option<&contact_normal_fields> {
         self.structure("fields")
     }
 
-    /// The `count` values that a member of a struct points to. None if the file holds fewer.
+    /// A copy of the `count` values to which a member of a struct points. None if the file has fewer.
     #[allow(clippy::not_unsafe_ptr_arg_deref)] // nothing but the memory of the file is read
     pub fn doubles_at(&self, at: *const f64, count: usize) -> Option<Vec<f64>> {
         // SAFETY: the memory holds `count` values.
         self.holds(at, count).then(|| unsafe { std::slice::from_raw_parts(at, count) }.to_vec())
     }
 
-    /// The `count` integers that a member of a struct points to. None if the file holds fewer.
+    /// A copy of the `count` integers to which a member of a struct points. None if the file has fewer.
     #[allow(clippy::not_unsafe_ptr_arg_deref)] // nothing but the memory of the file is read
     pub fn integers_at(&self, at: *const i32, count: usize) -> Option<Vec<i32>> {
         // SAFETY: the memory holds `count` values.
         self.holds(at, count).then(|| unsafe { std::slice::from_raw_parts(at, count) }.to_vec())
     }
 
+    /// Whether `count` aligned values from this address on are in the memory of one item.
     fn holds<T>(&self, at: *const T, count: usize) -> bool {
         let (at, bytes) = (at as usize, count.checked_mul(size_of::<T>()));
         let end = bytes.and_then(|bytes| at.checked_add(bytes));
@@ -101,13 +104,13 @@ impl Dump {
         at != 0 && is_aligned && end.is_some_and(|end| self.ranges().iter().any(|r| r.start <= at && end <= r.end))
     }
 
-    /// The struct that an argument points to.
+    /// The struct to which an argument points. None: the argument is NULL, not in the file, or of another kind.
     fn structure<T: Versioned>(&self, name: &str) -> Option<&T> {
         // SAFETY: NULL or the memory of a struct of this kind, which lives as long as the dump, and any bytes of which are valid.
         unsafe { self.pointer::<T>(name).ok()?.as_ref() }
     }
 
-    /// A pointer to the struct of an argument.
+    /// The pointer that an argument is, to a struct or to the first one of an array of structs.
     pub(super) fn pointer<T: Versioned>(&self, name: &str) -> Result<*mut T, String> {
         match self.target(name) {
             Target::Null => Ok(std::ptr::null_mut()),
@@ -117,7 +120,7 @@ impl Dump {
         }
     }
 
-    /// A pointer to the array of an argument.
+    /// The pointer that an argument is, to an array of numbers.
     pub(super) fn array<T>(&self, name: &str) -> Result<*mut T, String> {
         match self.target(name) {
             Target::Null => Ok(std::ptr::null_mut()),
@@ -136,7 +139,7 @@ impl Dump {
         i32::try_from(value).map_err(|_| format!("{name} is {value}"))
     }
 
-    /// The values of an array of doubles that is an argument, or of a handle ("handle.pressure"); none if there is none of this name.
+    /// A copy of an array of doubles: an argument of the call, or an array of the handle ("handle.pressure"). None: there is no such array.
     pub fn doubles(&self, name: &str) -> Option<Vec<f64>> {
         let Target::Item(item) = self.target(name) else { return None };
         let Some(Item::Array { size: 8, count, .. }) = self.parsed.items.get(item) else { return None };
@@ -149,7 +152,7 @@ impl Dump {
         found.map_or(Target::Null, |(_, target)| *target)
     }
 
-    /// Members that point to memory that is not in the file.
+    /// The names of members that pointed to a struct or array that is not in the file.
     pub fn missing(&self) -> Vec<String> {
         let structs = self.parsed.items.iter().filter_map(|item| match item {
             Item::Struct { kind, members, .. } => Some((kind, members)),
@@ -162,7 +165,7 @@ impl Dump {
         missing.collect()
     }
 
-    /// Members that the host had set, and which are NULL here.
+    /// The names of members that the calling program had set to callbacks or to data of its own. They are NULL here.
     pub fn of_the_host(&self) -> Vec<&str> {
         let members = self.parsed.items.iter().flat_map(|item| match item {
             Item::Struct { members, .. } => &members[..],
@@ -171,7 +174,7 @@ impl Dump {
         members.filter(|(_, value)| matches!(value, Value::OfTheHost(true))).map(|(place, _)| &*place.name).collect()
     }
 
-    /// The memory that calls may use.
+    /// The ranges of addresses that calls may read and write.
     pub(super) fn ranges(&self) -> Vec<Range<usize>> {
         let sizes = self.memory.iter().map(Vec::len);
         self.starts.iter().zip(sizes).map(|(start, words)| *start as usize..*start as usize + words * 8).collect()
@@ -181,6 +184,7 @@ impl Dump {
         self.starts[item] as usize
     }
 
+    /// Writes the members of all structs into memory.
     fn write_structs(&self) -> Result<(), String> {
         for index in 0..self.memory.len() {
             let Item::Struct { members, .. } = &self.parsed.items[index] else { continue };
@@ -190,12 +194,12 @@ impl Dump {
                     Value::Int64(value) => value as u64,
                     Value::Double(value) => value.to_bits(),
                     Value::OfTheHost(_) => 0,
-                    Value::Pointer(Target::Item(item)) => self.place(place.kind, item)? as u64,
+                    Value::Pointer(Target::Item(item)) => self.address(place.kind, item)? as u64,
                     Value::Pointer(_) => 0,
                 };
-                // SAFETY (both): a struct of ours has room for any size, and its members are aligned.
+                // SAFETY (both): the memory of a struct has room for any size, and its members are aligned.
                 unsafe {
-                    let to = self.starts[index].cast::<u8>().add(place.at);
+                    let to = self.starts[index].cast::<u8>().add(place.offset);
                     match place.kind.bytes() {
                         4 => to.cast::<u32>().write(bits as u32),
                         _ => to.cast::<u64>().write(bits),
@@ -206,8 +210,8 @@ impl Dump {
         Ok(())
     }
 
-    /// The address of an item to which a member of this kind may point.
-    fn place(&self, kind: Kind, item: usize) -> Result<usize, String> {
+    /// The address of an item. Refuses an item to which a member of this kind cannot point.
+    fn address(&self, kind: Kind, item: usize) -> Result<usize, String> {
         let fits = match (kind, self.parsed.items.get(item)) {
             (Kind::Structs(name), Some(Item::Struct { .. })) => is_struct(&self.parsed.items, item, name),
             (Kind::Array, Some(Item::Array { .. } | Item::Output { .. })) => true,
@@ -221,7 +225,7 @@ fn is_struct(items: &[Item], item: usize, name: &str) -> bool {
     matches!(items.get(item), Some(Item::Struct { kind, .. }) if kind.name == name)
 }
 
-/// Bytes of memory for an item. A struct has room for the largest size that a struct may declare.
+/// The bytes of memory for an item. A struct gets room for the largest size that a struct may declare.
 fn room(item: &Item) -> usize {
     match item {
         Item::Struct { room, .. } => LARGEST.max(*room),
@@ -230,7 +234,7 @@ fn room(item: &Item) -> usize {
     }
 }
 
-/// Little-endian values of `size` bytes, as those of the machine.
+/// Copies little-endian values of `size` bytes to memory, in the byte order of this machine.
 fn copy(from: &[u8], size: usize, to: &mut [u64]) {
     for (word, bytes) in to.iter_mut().zip(from.chunks(8)) {
         let mut eight = [0; 8];

@@ -1,4 +1,4 @@
-//! Replays the call of a dump.
+//! Makes the call of a dump again.
 
 use std::ops::Range;
 use std::ptr::null_mut;
@@ -12,22 +12,22 @@ use crate::ffi::*;
 use crate::friction::Particle;
 use crate::solver::StepBefore;
 
-/// The end of a replayed call.
+/// The end of a call that was made again.
 #[derive(Clone, Copy)]
 pub struct Replayed {
-    /// Its status.
+    /// The status of the call.
     pub status: i32,
-    /// Its report, if the call was given one: all 0 where none was written.
+    /// The report. None: the call had no report. A report that the call did not write has its values from the file.
     pub report: Option<contact_normal_report>,
 }
 
 impl Dump {
-    /// Makes the call again, on this thread. Callbacks are not called: the file has the distances that a surface callback wrote. A solve that began
-    /// from the result of a handle begins from its pressures. An error names the part of the call that is not in the file. After a status other
-    /// than OK `contact_normal_last_error` has the message.
+    /// Makes the call again, on this thread. The callbacks of the calling program are not called; for a surface callback the file has the distances
+    /// that the callback wrote. A solve that started from the last result of a handle takes the pressures of this result as an initial guess. The
+    /// error names a part of the call that is not in the file. After a status other than OK `contact_normal_last_error` has the message.
     pub fn replay(self) -> Result<Replayed, String> {
         let options = self.pointer::<contact_normal_options>("options")?;
-        // SAFETY: NULL or a struct of ours, which no one else uses.
+        // SAFETY: NULL or a struct of this dump, which no one else uses.
         if let Some(options) = unsafe { options.as_mut() } {
             options.dump = std::ptr::null();
         }
@@ -39,10 +39,11 @@ impl Dump {
         // SAFETY: NULL or a handle that this call made.
         unsafe { contact_normal_solver_free(handle) };
         let report = self.pointer::<contact_normal_report>("report")?;
-        // SAFETY: NULL or a struct of ours.
+        // SAFETY: NULL or a struct of this dump.
         Ok(Replayed { status: status?, report: unsafe { report.as_ref() }.copied() })
     }
 
+    /// Makes the call. `handle` receives the handle that it sets up, if any.
     unsafe fn call_again(&self, handle: *mut *mut contact_normal_solver) -> Result<i32, String> {
         let scene = self.pointer("scene")?;
         let options = self.pointer("options")?;
@@ -77,11 +78,11 @@ impl Dump {
         }
     }
 
-    /// Tangential problems, with a handle where the call had one.
+    /// Solves tangential problems again, with a handle if the call had one.
     unsafe fn tangential_again(&self, handle: *mut *mut contact_normal_solver) -> Result<i32, String> {
         let had_handle = !self.pointer::<contact_normal_options>("handle.options").unwrap_or(null_mut()).is_null();
         let (scene, pressure) = (self.pointer::<contact_normal_scene>("scene")?, self.array::<f64>("pressure")?);
-        // SAFETY (all): NULL, or structs of ours; what a call reads and writes is within the ranges, or it is refused.
+        // SAFETY (all): NULL, or structs of this dump; what a call reads and writes is within the ranges, or it is refused.
         unsafe {
             let mut options = self.pointer::<contact_normal_options>("options")?.as_ref().copied().unwrap_or_default();
             if had_handle {
@@ -102,14 +103,14 @@ impl Dump {
         }
     }
 
-    /// A call that began from the tractions of the handle begins from those of the file.
+    /// If the call started from the tractions of the handle, makes the tractions of the file the initial guess.
     unsafe fn start_friction(
         &self,
         scene: *mut contact_normal_scene,
         options: &mut contact_normal_options,
     ) -> Result<(), String> {
         let traction = [self.array::<f64>("handle.traction_x"), self.array("handle.traction_y")];
-        // SAFETY: NULL, or structs of ours which no one else uses.
+        // SAFETY: NULL, or structs of this dump, which no one else uses.
         let friction = unsafe { scene.as_ref().and_then(|scene| scene.friction.cast_mut().as_mut()) };
         let goes_on = options.initial_guess == CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
         if let (true, Some(friction), [Ok(x), Ok(y)]) = (goes_on, friction, traction) {
@@ -121,6 +122,7 @@ impl Dump {
         Ok(())
     }
 
+    /// Computes stresses again.
     unsafe fn stress_again(&self) -> Result<i32, String> {
         let (scene, options, n) = (self.pointer("scene")?, self.pointer("options")?, self.integer("n")?);
         let (body, pressure) = (self.integer("body")?, self.array("pressure")?);
@@ -136,10 +138,10 @@ impl Dump {
         }
     }
 
-    /// The accuracy asked for, with the surfaces of the file.
+    /// The `accuracy` of the call. A surface callback is replaced by the distances in the file.
     fn accuracy(&self) -> Result<*mut contact_normal_accuracy, String> {
         let accuracy = self.pointer::<contact_normal_accuracy>("accuracy")?;
-        // SAFETY: NULL or a struct of ours, which no one else uses.
+        // SAFETY: NULL or a struct of this dump, which no one else uses.
         if let Some(accuracy) = unsafe { accuracy.as_mut() }.filter(|_| self.of_the_host().contains(&"surface")) {
             accuracy.surface = Some(surface);
             accuracy.user = (&raw const *self).cast_mut().cast();
@@ -147,7 +149,7 @@ impl Dump {
         Ok(accuracy)
     }
 
-    /// Sets up a handle like that of the call, and solves.
+    /// Sets up a handle as that of the call was, and solves.
     unsafe fn solve_with_handle(&self, handle: *mut *mut contact_normal_solver) -> Result<i32, String> {
         // SAFETY: what a call reads and writes is within these ranges, or it is refused.
         let status = unsafe { self.set_up(handle)? };
@@ -156,7 +158,7 @@ impl Dump {
         }
         let scene = self.pointer::<contact_normal_scene>("scene")?;
         let report = self.pointer("report")?;
-        // SAFETY: NULL, or structs of ours.
+        // SAFETY: NULL, or structs of this dump.
         let (mut fields, mut options) = unsafe {
             let fields = self.pointer::<contact_normal_fields>("fields")?.as_ref();
             let options = self.pointer::<contact_normal_options>("options")?.as_ref();
@@ -184,7 +186,7 @@ impl Dump {
         }
     }
 
-    /// A handle for the scene of the call, with its options and the tables that the scene left out.
+    /// Sets up a handle for the scene of the call, with the options of the call's handle and the tables that the scene left out.
     unsafe fn set_up(&self, handle: *mut *mut contact_normal_solver) -> Result<i32, String> {
         let mut scene = *self.scene().ok_or("there is no scene")?;
         let values = [self.doubles("handle.influence"), self.doubles("handle.row_tables")];
@@ -208,7 +210,7 @@ impl Dump {
                 .map(|values| values.as_ptr_range())
                 .map(|Range { start, end }| start as usize..end as usize),
         );
-        // SAFETY: NULL, or a struct of ours which no one else uses.
+        // SAFETY: NULL, or a struct of this dump, which no one else uses.
         if let Some(friction) = unsafe { scene.friction.cast_mut().as_mut() } {
             for (k, name) in TANGENTIAL_TABLES.into_iter().enumerate() {
                 let table = self.pointer::<contact_normal_influence>(name).unwrap_or(null_mut());
@@ -229,15 +231,15 @@ impl Dump {
         Ok(within(ranges, || unsafe { contact_normal_solver_new(&scene, options, handle) }))
     }
 
-    /// Gives the handle the step of the file, if it has one, from which friction may continue.
+    /// If the file has tractions and particles of an earlier step, gives them to the handle, so that friction can continue from there.
     unsafe fn give_step(&self, handle: *mut contact_normal_solver) -> Result<(), String> {
-        let of = |name: &str| self.doubles(name);
-        let (Some(x), Some(y)) = (of("handle.traction_x"), of("handle.traction_y")) else { return Ok(()) };
-        let (coefficients, limits) = (of(PARTICLES[0]).unwrap_or_default(), of(PARTICLES[1]).unwrap_or_default());
+        let array = |name: &str| self.doubles(name);
+        let (Some(x), Some(y)) = (array("handle.traction_x"), array("handle.traction_y")) else { return Ok(()) };
+        let (coefficients, limits) = (array(PARTICLES[0]).unwrap_or_default(), array(PARTICLES[1]).unwrap_or_default());
         let limit = |i: usize| limits.get(i).copied().unwrap_or(0.0);
         let particle = |(i, coefficient): (usize, &f64)| Particle { coefficient: *coefficient, yield_limit: limit(i) };
         let particles: Vec<Particle> = coefficients.iter().enumerate().map(particle).collect();
-        let pressure = of(PRESSURE_BEFORE);
+        let pressure = array(PRESSURE_BEFORE);
         // SAFETY: a handle that was set up before.
         let mut held = unsafe { InUse::begin(handle) }.map_err(|_| "the handle is in use")?;
         let solver = &mut held.held().solver;
@@ -252,13 +254,13 @@ impl Dump {
     }
 }
 
-/// The memory of a value.
+/// The addresses that a value takes.
 fn range<T>(value: &T) -> Range<usize> {
-    let at = (&raw const *value) as usize;
-    at..at + size_of::<T>()
+    let start = (&raw const *value) as usize;
+    start..start + size_of::<T>()
 }
 
-/// Writes the surface that the host's callback wrote for this grid; cancels where there was none.
+/// A surface callback that writes the distances of the file for this grid. It cancels the call if the file has none.
 unsafe extern "C" fn surface(mx: i32, my: i32, _dx: f64, _dy: f64, h: *mut f64, user: *mut c_void) -> i32 {
     // SAFETY: the dump that is replayed.
     let dump = unsafe { &*user.cast::<Dump>() };

@@ -17,22 +17,22 @@
 #define CONTACT_NORMAL_OK 0
 
 /*
- `max_cycles`, `max_seconds` or a limit of an accuracy was reached; outputs hold the best iterate.
+ `max_cycles`, `max_seconds` or a limit of `contact_normal_accuracy` was reached; outputs hold the best iterate.
  */
 #define CONTACT_NORMAL_ITERATION_LIMIT 1
 
 /*
- A callback or `options->stop` cancelled; outputs hold the best iterate.
+ A callback or `options->stop` cancelled the call; outputs hold the best iterate.
  */
 #define CONTACT_NORMAL_CANCELLED 2
 
 /*
- No further progress; outputs hold the best iterate.
+ The iteration made no further progress; outputs hold the best iterate.
  */
 #define CONTACT_NORMAL_STAGNATED 3
 
 /*
- A pointer that must not be NULL is.
+ A pointer is NULL that must not be NULL.
  */
 #define CONTACT_NORMAL_NULL_POINTER -1
 
@@ -42,62 +42,62 @@
 #define CONTACT_NORMAL_INVALID_ARGUMENT -2
 
 /*
- A NaN, or an infinity where none is allowed.
+ An input is NaN, or infinite where it must be finite.
  */
 #define CONTACT_NORMAL_NOT_FINITE -3
 
 /*
- A struct_size that no version of the struct has; call its `_init`.
+ A struct has a struct_size that no version of this struct has; call its `_init`.
  */
 #define CONTACT_NORMAL_STRUCT_SIZE -4
 
 /*
- A valid request that this version does not carry out.
+ The request is valid, but this version of the library does not carry it out.
  */
 #define CONTACT_NORMAL_UNSUPPORTED -5
 
 /*
- The force cannot be carried.
+ The prescribed force cannot be carried, or the approach goes beyond full contact in a scene with two periods.
  */
 #define CONTACT_NORMAL_INFEASIBLE -6
 
 /*
- The influence coefficients are not those of a positive definite operator.
+ The influence coefficients do not belong to a positive definite operator.
  */
 #define CONTACT_NORMAL_NOT_POSITIVE_DEFINITE -7
 
 /*
- Memory (or a thread) could not be had.
+ Memory could not be allocated, or a thread could not be started.
  */
 #define CONTACT_NORMAL_OUT_OF_MEMORY -8
 
 /*
- The influence coefficients are not those that the solver has: `contact_normal_solver_set_influence` gives it others.
+ The influence coefficients differ from those of the solver handle, which only `contact_normal_solver_set_influence` changes.
  */
 #define CONTACT_NORMAL_INFLUENCE_CHANGED -9
 
 /*
- A bug of ours, caught at the boundary.
+ An error of the library itself; please report it.
  */
 #define CONTACT_NORMAL_INTERNAL -99
 
 /*
- The version of the header: 0.2.0 has MAJOR 0, MINOR 2, PATCH 0. `contact_normal_version` is that of the library.
+ The first number of the version of this header: 0.2.0 has MAJOR 0, MINOR 2, PATCH 0. `contact_normal_version` is that of the library.
  */
 #define CONTACT_NORMAL_VERSION_MAJOR 0
 
 /*
- The second number of the version.
+ The second number of the version of this header.
  */
 #define CONTACT_NORMAL_VERSION_MINOR 2
 
 /*
- The third number of the version.
+ The third number of the version of this header.
  */
 #define CONTACT_NORMAL_VERSION_PATCH 0
 
 /*
- Version of the ABI: grows with every release that adds to it.
+ The version of the ABI. It grows with every release that adds to the ABI.
  */
 #define CONTACT_NORMAL_ABI_VERSION 2
 
@@ -247,42 +247,42 @@
 #define CONTACT_NORMAL_KIND_WORN 29
 
 /*
- `load`: the one of `approach` and `force` that is set. Both or neither are refused.
+ `load`: whichever of `approach` and `force` is set. It is refused if both are set, or none.
  */
 #define CONTACT_NORMAL_PRESCRIBED_UNSET 0
 
 /*
- `load`: the approach of the bodies is given.
+ `load`: the approach of the bodies is prescribed.
  */
 #define CONTACT_NORMAL_PRESCRIBED_APPROACH 1
 
 /*
- `load`: the normal force is given, the approach is found.
+ `load`: the normal force is prescribed, and the approach is computed.
  */
 #define CONTACT_NORMAL_PRESCRIBED_FORCE 2
 
 /*
- `motion`: sideways and about the normal, without rolling.
+ `motion`: the bodies slide along the surface and turn about the normal, without rolling.
  */
 #define CONTACT_NORMAL_MOTION_SHIFT 0
 
 /*
- `motion`: a step of rolling, from the tractions before.
+ `motion`: a step of rolling, which begins with the previous tractions.
  */
 #define CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING 1
 
 /*
- `motion`: rolling that does not change any more; the tractions before are only where the iteration starts.
+ `motion`: rolling whose tractions no longer change. Previous tractions are only an initial guess.
  */
 #define CONTACT_NORMAL_MOTION_STEADY_ROLLING 2
 
 /*
- `prescribed`: the creepage of a direction is given.
+ `prescribed`: the creepage of a direction is prescribed.
  */
 #define CONTACT_NORMAL_PRESCRIBED_CREEPAGE 0
 
 /*
- `prescribed`: the tangential force of a direction is given, its creepage is found.
+ `prescribed`: the tangential force of a direction is prescribed, and the creepage is computed.
  */
 #define CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE 1
 
@@ -292,32 +292,33 @@
 #define CONTACT_NORMAL_FRICTION_LAW_COULOMB 0
 
 /*
- `law`: parts fall as `max(0, 1 - v/(2 h))`.
+ `law`: both falling parts f(v) are `max(0, 1 - v/(2 h))`.
  */
 #define CONTACT_NORMAL_FRICTION_LAW_LINEAR 1
 
 /*
- `law`: the first part falls as `1/(1 + v/h)`, the second as `1/(1 + (v/h)^2)`.
+ `law`: the first falling part f(v) is `1/(1 + v/h)`, the second one `1/(1 + (v/h)^2)`.
  */
 #define CONTACT_NORMAL_FRICTION_LAW_RATIONAL 2
 
 /*
- `law`: parts fall as `2^(-v/h)`.
+ `law`: both falling parts f(v) are `2^(-v/h)`.
  */
 #define CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL 3
 
 /*
- `friction->branch`: the solution near the start of the iteration. If that finds none and no force is given, it begins again from turns of LOW.
+ `friction->branch`: the solution near the initial guess. If the iteration finds none and no force is prescribed, it starts again from an iterate
+ of LOW.
  */
 #define CONTACT_NORMAL_FRICTION_BRANCH_NEAR 0
 
 /*
- `friction->branch`: that to which bounds without slip lead.
+ `friction->branch`: the solution of an iteration that starts from the traction bounds without slip.
  */
 #define CONTACT_NORMAL_FRICTION_BRANCH_LOW 1
 
 /*
- `friction->branch`: that to which bounds of any speed lead.
+ `friction->branch`: the solution of an iteration that starts from the traction bounds of unlimited slip.
  */
 #define CONTACT_NORMAL_FRICTION_BRANCH_HIGH 2
 
@@ -327,17 +328,17 @@
 #define CONTACT_NORMAL_STICK_SLIP_EXTERIOR 0
 
 /*
- `fields->stick_slip`: it sticks.
+ `fields->stick_slip`: the element sticks.
  */
 #define CONTACT_NORMAL_STICK_SLIP_STICK 1
 
 /*
- `fields->stick_slip`: it slips.
+ `fields->stick_slip`: the element slips.
  */
 #define CONTACT_NORMAL_STICK_SLIP_SLIP 2
 
 /*
- `fields->stick_slip`: it slips within a layer that yields, below mu p.
+ `fields->stick_slip`: the element slips because a plastic layer yields, at a traction below mu p.
  */
 #define CONTACT_NORMAL_STICK_SLIP_PLASTIC 3
 
@@ -347,12 +348,12 @@
 #define CONTACT_NORMAL_LAW_EXPONENTIAL 0
 
 /*
- `law`: sigma = w/rho up to the range, 0 beyond, the edge smeared over `smear` of the range on both sides.
+ `law`: sigma = w/rho up to e = (1 - smear) rho, then linear to 0 at e = (1 + smear) rho.
  */
 #define CONTACT_NORMAL_LAW_DUGDALE 1
 
 /*
- `law`: sigma = w/rho (1 - e/(3 rho))^2 up to three ranges.
+ `law`: sigma = w/rho (1 - e/(3 rho))^2 up to e = 3 rho, then 0.
  */
 #define CONTACT_NORMAL_LAW_CUBIC 2
 
@@ -362,57 +363,57 @@
 #define CONTACT_NORMAL_LAW_VAN_DER_WAALS 3
 
 /*
- `start`: on coarser grids with longer ranges, from the contact without attraction.
+ `start`: the solve begins on coarser grids, on which the range is longer, with the contact without attraction.
  */
 #define CONTACT_NORMAL_START_AUTO 0
 
 /*
- `start`: from a larger approach: elements in contact stay in contact.
+ `start`: the solve begins at a larger approach and then decreases it, so that elements in contact tend to stay in contact.
  */
 #define CONTACT_NORMAL_START_FROM_CONTACT 1
 
 /*
- `start`: from bodies apart: nothing snaps in before it must.
+ `start`: the solve begins with separated bodies, so that elements come into contact only if no separated state exists nearby.
  */
 #define CONTACT_NORMAL_START_FROM_APART 2
 
 /*
- `form`: RELAXATION where the approach is given, CREEP where the force is.
+ `form`: RELAXATION if the approach is prescribed, CREEP if the force is.
  */
 #define CONTACT_NORMAL_FORM_AUTO 0
 
 /*
- `form`: displacements are linear in the step; second order. Exact where the approach is held, and one body is rigid or both relax alike.
+ `form`: displacements are linear in time during the step; second order. Exact for a constant approach, if one body is rigid or both relax alike.
  */
 #define CONTACT_NORMAL_FORM_RELAXATION 1
 
 /*
- `form`: pressures are linear in the step; second order, exact where they are held.
+ `form`: pressures are linear in time during the step; second order. Exact for constant pressures.
  */
 #define CONTACT_NORMAL_FORM_CREEP 2
 
 /*
- `form`: backward Euler; first order, to compare with programs that have it.
+ `form`: backward Euler, first order, for a comparison with programs that use it.
  */
 #define CONTACT_NORMAL_FORM_BACKWARD_EULER 3
 
 /*
- `method`: the fastest way known that is safe.
+ `method`: the library chooses the fastest method that is reliable, and tries others if it fails.
  */
 #define CONTACT_NORMAL_METHOD_AUTO 0
 
 /*
- `method`: Kalker's NORM, active set and conjugate gradients.
+ `method`: Kalker's NORM, an active-set method with conjugate gradients.
  */
 #define CONTACT_NORMAL_METHOD_NORM 1
 
 /*
- `method`: one V-cycle per active-set step (section 4.1 of the paper).
+ `method`: one V-cycle of multigrid per active-set step (section 4.1 of the paper).
  */
 #define CONTACT_NORMAL_METHOD_MULTIGRID 2
 
 /*
- `method`: the same, nested over the grids (section 4.3).
+ `method`: MULTIGRID nested over the grids, from the coarsest to the finest (section 4.3 of the paper).
  */
 #define CONTACT_NORMAL_METHOD_FULL_MULTIGRID 3
 
@@ -422,7 +423,7 @@
 #define CONTACT_NORMAL_METHOD_PROJECTED_CG 4
 
 /*
- `smoother`: Gauss-Seidel.
+ `smoother`: the default, which is GAUSS_SEIDEL.
  */
 #define CONTACT_NORMAL_SMOOTHER_AUTO 0
 
@@ -437,7 +438,7 @@
 #define CONTACT_NORMAL_SMOOTHER_RED_BLACK 2
 
 /*
- `smoother`: (damped) Jacobi; does not converge on fine grids.
+ `smoother`: (damped) Jacobi, which does not converge on fine grids.
  */
 #define CONTACT_NORMAL_SMOOTHER_JACOBI 3
 
@@ -447,27 +448,27 @@
 #define CONTACT_NORMAL_SMOOTHER_FFT 4
 
 /*
- `active_set`: the contact conditions decide.
+ `active_set`: the contact conditions determine the contact area.
  */
 #define CONTACT_NORMAL_ACTIVE_SET_FREE 0
 
 /*
- `active_set`: the equations are solved on `fields->contact` only, NORM's inner solve. Pressures may be negative.
+ `active_set`: the contact area is `fields->contact`; e = 0 is solved there, as in NORM's inner solve. Pressures may be negative.
  */
 #define CONTACT_NORMAL_ACTIVE_SET_FIXED 1
 
 /*
- `initial_guess`: nothing is known.
+ `initial_guess`: there is no initial guess.
  */
 #define CONTACT_NORMAL_INITIAL_GUESS_NONE 0
 
 /*
- `initial_guess`: `fields->pressure`, and `fields->contact` if not NULL.
+ `initial_guess`: `fields->pressure`, and `fields->contact` if it is not NULL.
  */
 #define CONTACT_NORMAL_INITIAL_GUESS_GIVEN 1
 
 /*
- `initial_guess`: what this solver handle found last.
+ `initial_guess`: the last result of this solver handle.
  */
 #define CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS 2
 
@@ -478,12 +479,12 @@
 
 /*
  `criterion`: rms over C of the last change of p <= tolerance times the rms over C of p. OK also needs residual, violation and
- complementarity within the larger of 1e-2 and the tolerance, because a stalled iterate has a small last change, too.
+ complementarity within the larger of 1e-2 and the tolerance, because the last change is also small if the iteration stalls.
  */
 #define CONTACT_NORMAL_CRITERION_UPDATE 1
 
 /*
- `precision`: whichever is faster.
+ `precision`: whichever of DOUBLE and MIXED is faster.
  */
 #define CONTACT_NORMAL_PRECISION_AUTO 0
 
@@ -493,78 +494,78 @@
 #define CONTACT_NORMAL_PRECISION_DOUBLE 1
 
 /*
- `precision`: single precision in the inner work, where it helps; never in the result.
+ `precision`: single precision in inner iterations, where it helps; the result is always in double precision.
  */
 #define CONTACT_NORMAL_PRECISION_MIXED 2
 
 /*
- `warnings`: contact reaches the border of the grid, in a direction without a period: the potential contact area may be too small.
+ `warnings`: contact reaches the border of the grid, in a direction without a period. The potential contact area may be too small.
  */
 #define CONTACT_NORMAL_WARNING_BORDER 1
 
 /*
- `warnings`: one element in contact of many: the grid is too coarse, or the units of lengths and pressures do not go together.
+ `warnings`: only one element of the grid is in contact. The grid is too coarse, or the units of lengths and pressures are inconsistent.
  */
 #define CONTACT_NORMAL_WARNING_ONE_ELEMENT 2
 
 /*
- `warnings`: one element of several carries more than half of the force: the grid is too coarse there, or a value of h is wrong.
+ `warnings`: one of several elements in contact carries more than half of the force. The grid is too coarse there, or a value of h is wrong.
  */
 #define CONTACT_NORMAL_WARNING_SPIKE 4
 
 /*
- `warnings`: an error of the force (or the approach) was to be estimated, and cannot be: see `accuracy.untrusted`. If that is 0, one grid does
- not tell the error: pressures are at their limit, or bodies attract each other.
+ `warnings`: the error of the force (or of the approach) cannot be estimated: see `accuracy.untrusted`. If `untrusted` is 0, a solve on one grid
+ cannot estimate the error, because pressures are at their limit or the bodies attract each other.
  */
 #define CONTACT_NORMAL_WARNING_ERROR_UNKNOWN 8
 
 /*
- `warnings`: an element alone is unstable under the attraction: the elements are too coarse for its range (`adhesion.resolution` above 1).
+ `warnings`: a single element is unstable under the attraction. The elements are too coarse for the range (`adhesion.resolution` above 1).
  */
 #define CONTACT_NORMAL_WARNING_RANGE 16
 
 /*
- `warnings`: the attraction reaches the border of the grid (`adhesion.border_share` above 0.001): the grid does not contain it.
+ `warnings`: the attraction reaches the border of the grid (`adhesion.border_share` above 0.001). The grid is too small for it.
  */
 #define CONTACT_NORMAL_WARNING_ATTRACTION 32
 
 /*
- `warnings`: bounds of friction fall so steeply with the slip (`tangential.law_slope` of .5 or more) that there may be several solutions.
+ `warnings`: the traction bounds fall so steeply with the slip (`tangential.law_slope` of 0.5 or more) that there may be several solutions.
  */
 #define CONTACT_NORMAL_WARNING_LAW 64
 
 /*
- `untrusted`: the error of the force (or the approach) cannot be estimated: contact is on single elements.
+ `untrusted`: the error of the force (or of the approach) cannot be estimated, because contact is on single elements.
  */
 #define CONTACT_NORMAL_UNTRUSTED_FORCE 1
 
 /*
- `untrusted`: that of the largest pressure (singular at an edge, or on a surface that the grid does not resolve).
+ `untrusted`: the error of the largest pressure cannot be estimated (pressures are singular at an edge, or the grid does not resolve the surface).
  */
 #define CONTACT_NORMAL_UNTRUSTED_MAX_PRESSURE 2
 
 /*
- `untrusted`: that of the pressures.
+ `untrusted`: the error of the pressures cannot be estimated.
  */
 #define CONTACT_NORMAL_UNTRUSTED_PRESSURE 4
 
 /*
- `limited_by`: not known.
+ `limited_by`: what limits the accuracy is not known.
  */
 #define CONTACT_NORMAL_LIMITED_BY_UNKNOWN 0
 
 /*
- `limited_by`: the grid; a smaller tolerance would change nothing.
+ `limited_by`: the grid limits the accuracy. A smaller tolerance would not improve it.
  */
 #define CONTACT_NORMAL_LIMITED_BY_GRID 1
 
 /*
- `limited_by`: the tolerance; it allows a larger error than that of the grid.
+ `limited_by`: the tolerance limits the accuracy. It allows a larger error than that of the grid.
  */
 #define CONTACT_NORMAL_LIMITED_BY_TOLERANCE 2
 
 /*
- `quantity`: the force, or the approach where the force is prescribed.
+ `quantity`: the force, or the approach if the force is prescribed.
  */
 #define CONTACT_NORMAL_QUANTITY_FORCE 0
 
@@ -584,17 +585,17 @@
 #define CONTACT_NORMAL_QUANTITY_MEAN_GAP 3
 
 /*
- `quantity`: dF/d approach, as `contact_normal_solver_stiffness` has it.
+ `quantity`: the stiffness dF/dapproach, as `contact_normal_solver_stiffness` computes it.
  */
 #define CONTACT_NORMAL_QUANTITY_STIFFNESS 4
 
 /*
- `quantity`: the length of the tangential force.
+ `quantity`: the magnitude of the tangential force.
  */
 #define CONTACT_NORMAL_QUANTITY_TANGENTIAL_FORCE 5
 
 /*
- `quantity`: the length of the creepage, in those directions in which the force is prescribed.
+ `quantity`: the magnitude of the creepage, of the directions in which the force is prescribed.
  */
 #define CONTACT_NORMAL_QUANTITY_CREEPAGE 6
 
@@ -604,7 +605,7 @@
 #define CONTACT_NORMAL_QUANTITY_SPIN_MOMENT 7
 
 /*
- `quantity`: the area of stick.
+ `quantity`: the stick area.
  */
 #define CONTACT_NORMAL_QUANTITY_STICK_AREA 8
 
@@ -624,12 +625,12 @@
 #define CONTACT_NORMAL_QUANTITY_MAX_SHEAR 11
 
 /*
- `obstacle`: none; the accuracy can be reached.
+ `obstacle`: there is none, the accuracy can be reached.
  */
 #define CONTACT_NORMAL_OBSTACLE_NONE 0
 
 /*
- `obstacle`: no grid is known to suffice: the quantity is singular or not resolved, contact is on single elements, nothing touches and the
+ `obstacle`: no grid is known to suffice. The quantity is singular or not resolved, contact is on single elements, nothing touches and the
  quantity is not 0 then, or no grid was solved.
  */
 #define CONTACT_NORMAL_OBSTACLE_SINGULAR 1
@@ -640,22 +641,22 @@
 #define CONTACT_NORMAL_OBSTACLE_ROUND_OFF 2
 
 /*
- `obstacle`: it takes more elements than `accuracy->max_elements`.
+ `obstacle`: the accuracy takes more elements than `accuracy->max_elements`.
  */
 #define CONTACT_NORMAL_OBSTACLE_ELEMENTS 3
 
 /*
- `obstacle`: it takes more memory than `accuracy->max_bytes`.
+ `obstacle`: the accuracy takes more memory than `accuracy->max_bytes`.
  */
 #define CONTACT_NORMAL_OBSTACLE_MEMORY 4
 
 /*
- `obstacle`: it takes longer than `accuracy->max_seconds`.
+ `obstacle`: the accuracy takes longer than `accuracy->max_seconds`.
  */
 #define CONTACT_NORMAL_OBSTACLE_TIME 5
 
 /*
- `obstacle`: bodies relax, and the length of the step alone leaves more than `target`: `time_error` says how much.
+ `obstacle`: the bodies relax, and the error because of the time step alone, `time_error`, exceeds `target`.
  */
 #define CONTACT_NORMAL_OBSTACLE_STEP 6
 
@@ -665,32 +666,32 @@
 #define CONTACT_NORMAL_LACK_NONE 0
 
 /*
- `lack`: there is no value, since the scene has no friction.
+ `lack`: there is no value, because the scene has no friction.
  */
 #define CONTACT_NORMAL_LACK_NO_FRICTION 1
 
 /*
- `lack`: there is no value, since the scene prescribes it.
+ `lack`: there is no value, because the scene prescribes the quantity.
  */
 #define CONTACT_NORMAL_LACK_PRESCRIBED 2
 
 /*
- `lack`: there is no value, since an effect of the scene stands against it: stresses are those of half-spaces.
+ `lack`: there is no value, because an effect of the scene excludes it: stresses are those of half-spaces.
  */
 #define CONTACT_NORMAL_LACK_EFFECT 3
 
 /*
- `lack`: there is no value, since there is no contact; or no error of a value of 0, since the grid is too coarse to touch.
+ `lack`: there is no value, because there is no contact; or a value of 0 has no error, because on the coarse grid nothing touches.
  */
 #define CONTACT_NORMAL_LACK_NO_CONTACT 4
 
 /*
- `lack`: there is no error, since the value grows from grid to grid.
+ `lack`: there is no error, because the value grows from grid to grid.
  */
 #define CONTACT_NORMAL_LACK_SINGULAR 5
 
 /*
- `lack`: there is no error, since one grid alone was solved.
+ `lack`: there is no error, because only one grid was solved.
  */
 #define CONTACT_NORMAL_LACK_ONE_GRID 6
 
@@ -700,27 +701,27 @@
 #define CONTACT_NORMAL_LACK_UNSOLVED 7
 
 /*
- `lack`: there is no error, since the changes from grid to grid do not fall yet: one more grid tells whether the value converges.
+ `lack`: there is no error, because the changes from grid to grid do not decrease yet. One more grid shows whether the value converges.
  */
 #define CONTACT_NORMAL_LACK_UNSETTLED 8
 
 /*
- `omitted`: nothing.
+ `omitted`: nothing is left out.
  */
 #define CONTACT_NORMAL_OMIT_NONE 0
 
 /*
- `omitted`: the coatings; the bodies are all of the material below.
+ `omitted`: the coatings. The bodies consist of the material below.
  */
 #define CONTACT_NORMAL_OMIT_COATING 1
 
 /*
- `omitted`: the period; the scene stands alone.
+ `omitted`: the period. The scene is not repeated.
  */
 #define CONTACT_NORMAL_OMIT_PERIOD 2
 
 /*
- `omitted`: the patches; all feel each other.
+ `omitted`: the patches. All elements influence each other in full.
  */
 #define CONTACT_NORMAL_OMIT_PATCHES 3
 
@@ -730,18 +731,18 @@
 #define CONTACT_NORMAL_OMIT_LAYER 4
 
 /*
- `omitted`: the limit of pressures.
+ `omitted`: the pressure limit.
  */
 #define CONTACT_NORMAL_OMIT_PRESSURE_LIMIT 5
 
 /*
- `omitted`: friction, with what tractions of unlike bodies do to pressures.
+ `omitted`: friction, and for unlike bodies the influence of the tractions on the pressures.
  */
 #define CONTACT_NORMAL_OMIT_FRICTION 6
 
 /*
- `omitted`: that bodies are unlike; in their place there are like bodies of the same compliances, so that pressures and tractions do not
- feel each other.
+ `omitted`: the coupling of unlike bodies. Like bodies of the same compliances replace them, so that pressures and tractions do not
+ influence each other.
  */
 #define CONTACT_NORMAL_OMIT_COUPLING 7
 
@@ -751,53 +752,53 @@
 #define CONTACT_NORMAL_OMIT_SPIN 8
 
 /*
- `omitted`: the tangential compliance of a third body.
+ `omitted`: the tangential compliance of the layer between the bodies (`friction->compliance`).
  */
 #define CONTACT_NORMAL_OMIT_FRICTION_COMPLIANCE 9
 
 /*
- `omitted`: the coatings; a thin layer stands for them, which is their limit for waves much longer than their thickness. Only of coatings
- that are softer than the body below.
+ `omitted`: the coatings. A thin layer replaces them, which is their limit for pressure waves much longer than their thickness. This is for
+ coatings that are softer than the body below.
  */
 #define CONTACT_NORMAL_OMIT_COATING_AS_LAYER 10
 
 /*
- `omitted`: adhesion; nothing attracts.
+ `omitted`: adhesion. There is no attraction.
  */
 #define CONTACT_NORMAL_OMIT_ADHESION 11
 
 /*
- `omitted`: the law of friction; the coefficient is that at rest everywhere.
+ `omitted`: the law of friction. The coefficient is the one at rest everywhere.
  */
 #define CONTACT_NORMAL_OMIT_FRICTION_LAW 12
 
 /*
- `omitted`: the yield of a third body, not its compliance.
+ `omitted`: the yielding of the layer between the bodies (`friction->yield_limit`), but not its compliance.
  */
 #define CONTACT_NORMAL_OMIT_FRICTION_LAYER 13
 
 /*
- `omitted`: that bodies relax; they give way as at once.
+ `omitted`: the relaxation of the bodies. They have their instantaneous moduli.
  */
 #define CONTACT_NORMAL_OMIT_VISCO 14
 
 /*
- `verdict`: the change is too near to the target, or its error is not known; more time decides.
+ `verdict`: the change is too near to the target, or its error is not known. With more time the call may decide.
  */
 #define CONTACT_NORMAL_VERDICT_NOT_DECIDED 0
 
 /*
- `verdict`: the quantity changes by less than the target, the error of the change included.
+ `verdict`: the quantity changes by less than the target, with the error of the change.
  */
 #define CONTACT_NORMAL_VERDICT_NEGLIGIBLE 1
 
 /*
- `verdict`: it changes by more than the target.
+ `verdict`: the quantity changes by more than the target.
  */
 #define CONTACT_NORMAL_VERDICT_NEEDED 2
 
 /*
- Log level: nothing.
+ Log level: no messages.
  */
 #define CONTACT_NORMAL_LOG_OFF 0
 
@@ -812,9 +813,9 @@
 #define CONTACT_NORMAL_LOG_INFO 2
 
 /*
- Operators, transforms, grids and workspace, built once. One thread at a time may use a handle; different handles may be
- used by different threads. While a call uses a handle, any other call with it, from a callback or from another thread, is refused
- (INVALID_ARGUMENT).
+ A solver handle: the operators, transforms, grids and workspace of a scene, set up once for many solves. One thread at a time may use a handle;
+ different threads may use different handles. While a call uses a handle, any other call with the same handle, from a callback or from another
+ thread, is refused (INVALID_ARGUMENT).
  */
 typedef struct contact_normal_solver contact_normal_solver;
 
@@ -825,7 +826,7 @@ typedef int32_t contact_normal_status;
 
 /*
  Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below,
- which may be rigid: +infinity.
+ which may be rigid (`shear_modulus` +infinity).
  */
 typedef struct contact_normal_coating {
   /*
@@ -833,22 +834,22 @@ typedef struct contact_normal_coating {
    */
   int64_t struct_size;
   /*
-   Its thickness, a length >= 0; default 0: no coating.
+   The thickness of the coating, a length >= 0; default 0: no coating.
    */
   double thickness;
   /*
-   Its G, a pressure > 0, at most 1e4 times that of the body; default 0: to be set.
+   The shear modulus G of the coating, a pressure > 0, at most 1e4 times that of the body; default 0: to be set.
    */
   double shear_modulus;
   /*
-   Its nu, in (-1, 0.5]; default 0.
+   The Poisson ratio nu of the coating, in (-1, 0.5]; default 0.
    */
   double poisson_ratio;
 } contact_normal_coating;
 
 /*
- Effect: the caller's own influence coefficients instead of the half-space. Nothing is assumed of them but that a pressure
- displaces its own element inwards: they need be neither symmetric nor positive.
+ Effect: influence coefficients of your own instead of the half-space's. They need be neither symmetric nor positive. But a pressure must displace
+ its own element inwards, and must not displace another element by more (in the mean of both directions between two elements).
  */
 typedef struct contact_normal_influence {
   /*
@@ -856,27 +857,27 @@ typedef struct contact_normal_influence {
    */
   int64_t struct_size;
   /*
-   The table covers offsets -cx..cx-1; cx >= mx. Default 0: to be set.
+   The table covers the offsets -cx to cx - 1 in x; cx >= mx. Default 0: to be set.
    */
   int32_t cx;
   /*
-   And -cy..cy-1; cy >= my. Default 0: to be set.
+   The table covers the offsets -cy to cy - 1 in y; cy >= my. Default 0: to be set.
    */
   int32_t cy;
   /*
-   `[2 cy][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, -cy:cy-1)`. `A_IJ = cf(ix - jx, iy - jy)`: the displacement
+   The table, `[2 cy][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, -cy:cy-1)`. `A_IJ = cf(ix - jx, iy - jy)` is the displacement
    of element I by a unit pressure on element J (length per pressure). Row -cy and column -cx are never read.
    Default NULL: to be set.
    */
   const double *coefficients;
   /*
-   Every coefficient is multiplied by this, positive; default 1.
+   A positive factor on every coefficient; default 1.
    */
   double scale;
 } contact_normal_influence;
 
 /*
- Effect: a thin compliant layer, `e = h - approach + A p + c p`. Displacements contain the compression of the layer.
+ Effect: a thin compliant layer between the bodies, `e = h - approach + A p + c p`. Displacements contain the compression of the layer.
  */
 typedef struct contact_normal_layer {
   /*
@@ -884,19 +885,19 @@ typedef struct contact_normal_layer {
    */
   int64_t struct_size;
   /*
-   c of all elements, a length per pressure, >= 0; default 0. Not read if there are `compliances`.
+   The compliance c of all elements, a length per pressure, >= 0; default 0. Not read if there are `compliances`.
    */
   double compliance;
   /*
-   c of each element, `[my][mx]`, or NULL (default).
+   The compliance c of each element, `[my][mx]`, or NULL (default).
    */
   const double *compliances;
 } contact_normal_layer;
 
 /*
  Effect: pressures do not exceed a limit, the hardness of the softer surface. Elements at the limit have `contact` 2 and a
- `deformed_distance` <= 0: the plastic penetration, with its sign turned. The limit has no
- memory: unloading goes back the way that loading came.
+ `deformed_distance` <= 0, which is minus the depth of the plastic indentation. The indentation has no memory: unloading follows the same path as
+ loading.
  */
 typedef struct contact_normal_pressure_limit {
   /*
@@ -904,18 +905,18 @@ typedef struct contact_normal_pressure_limit {
    */
   int64_t struct_size;
   /*
-   The limit of all elements, a pressure > 0; +infinity (default): none. Not read if there are `limits`.
+   The limit of all elements, a pressure > 0; +infinity (default): no limit. Not read if there are `limits`.
    */
   double limit;
   /*
-   That of each element, `[my][mx]`, or NULL (default).
+   The limit of each element, `[my][mx]`, or NULL (default).
    */
   const double *limits;
 } contact_normal_pressure_limit;
 
 /*
- Effect: the scene repeats itself after `mx dx` in x, after `my dy` in y, or after both: the grid is one period. With both, mean
- displacements are zero and the approach is relative to the mean planes of the bodies (docs/effects.md).
+ Effect: the scene is periodic in x with the period `mx dx`, in y with the period `my dy`, or in both directions: the grid is one period. With two
+ periods the mean displacement is zero, and the approach is relative to the mean planes of the bodies (docs/effects.md).
  */
 typedef struct contact_normal_period {
   /*
@@ -923,17 +924,18 @@ typedef struct contact_normal_period {
    */
   int64_t struct_size;
   /*
-   1: it repeats itself in x; 0 (default): it does not.
+   1: the scene is periodic in x; 0 (default): it is not.
    */
   int32_t x;
   /*
-   The same in y.
+   1: the scene is periodic in y; 0 (default): it is not.
    */
   int32_t y;
 } contact_normal_period;
 
 /*
- Effect: several contact patches on one grid, whose interaction is scaled: for patches on planes of their own.
+ Effect: several contact patches on one grid, with a factor on the influence of each patch on each other one: for patches that lie in different
+ planes.
  */
 typedef struct contact_normal_patches {
   /*
@@ -941,7 +943,7 @@ typedef struct contact_normal_patches {
    */
   int64_t struct_size;
   /*
-   Number of patches, 1 to 64; default 0: to be set. Each costs a product.
+   The number of patches, 1 to 64; default 0: to be set. Each patch adds the cost of a product.
    */
   int32_t count;
   /*
@@ -949,20 +951,22 @@ typedef struct contact_normal_patches {
    */
   int32_t reserved;
   /*
-   The patch of each element, `[my][mx]`: 0 to count - 1, or -1: none, nothing touches there, and displacements are those of patch 0. Default NULL: to be set.
+   The patch of each element, `[my][mx]`: 0 to count - 1. -1: the element belongs to no patch and stays exterior; its displacement is that of an
+   element of patch 0. Default NULL: to be set.
    */
   const int32_t *patch;
   /*
-   `[count][count]`, symmetric: 1 on the diagonal, elsewhere in [0, 1]. 0: independent, 1: as if there were no patches.
-   Default NULL: to be set.
+   The factor between each pair of patches, `[count][count]`, symmetric: 1 on the diagonal, elsewhere in [0, 1]. 0: the two patches do not
+   influence each other; 1: their influence is unchanged. Default NULL: to be set.
    */
   const double *factors;
 } contact_normal_patches;
 
 /*
- Effect: own coefficients that differ per loaded row, instead of the half-space: conformal contact, an inclination that varies along
- y. Nothing is assumed of them but that a pressure displaces its own element inwards. Memory and time of a product grow with
- my * my * mx.
+ Effect: influence coefficients of your own that differ from loaded row to loaded row, instead of the half-space's: for conformal contact, or an
+ inclination that varies along y. They need be neither symmetric nor positive. But a pressure must displace its own element inwards, and no
+ coefficient (in the mean of both directions between two elements) may exceed the largest one of an element on itself. Memory and time of a product
+ grow with my * my * mx.
  */
 typedef struct contact_normal_row_tables {
   /*
@@ -970,31 +974,30 @@ typedef struct contact_normal_row_tables {
    */
   int64_t struct_size;
   /*
-   The tables cover offsets -cx..cx-1 in x; cx >= mx. Default 0: to be set.
+   The tables cover the offsets -cx to cx - 1 in x; cx >= mx. Default 0: to be set.
    */
   int32_t cx;
   /*
-   Number of tables, and rows of each: my. Default 0: to be set.
+   The number of tables, and of the rows of each table: my. Default 0: to be set.
    */
   int32_t rows;
   /*
-   `[rows][rows][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, my, my)`. `A_IJ = cf(ix - jx, iy, jy)`: the displacement of
-   element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read. Default
+   The tables, `[rows][rows][2 cx]`, x fastest: the bytes of a Fortran `cf(-cx:cx-1, my, my)`. `A_IJ = cf(ix - jx, iy, jy)` is the displacement
+   of element (ix, iy) by a unit pressure on element (jx, jy). Column -cx is never read. Default
    NULL: to be set.
    */
   const double *coefficients;
   /*
-   Every coefficient is multiplied by this, positive; default 1.
+   A positive factor on every coefficient; default 1.
    */
   double scale;
 } contact_normal_row_tables;
 
 /*
- Effect: friction, `|q| <= mu p`. Tractions q act on body 1; the slip s is that of body 1 over body 2: a length, that of the step.
- Creepages and spin of a shift are lengths and an angle; of rolling they are divided by the length rolled. A negative creepage in x
- gives a positive force in x. Rigid slips must be less than 1e140, and so must previous tractions, except in steady rolling. The rms of rigid
- slips must lie between 1e-60 and 1e30 times what tractions of the size of mu p displace their own element by, or be 0
- (INVALID_ARGUMENT). See docs/friction.md.
+ Effect: friction, `|q| <= mu p`. Tractions q act on body 1. The slip s is that of body 1 over body 2 in the step, a length. The creepages of a
+ shift are lengths, and its spin is an angle; those of rolling are divided by the length rolled. A negative creepage in x gives a positive force
+ in x. Rigid slips must be less than 1e140, and so must previous tractions, except in steady rolling. The rms of the rigid slips must be 0, or
+ between 1e-60 and 1e30 times the displacement of an element by a traction of mu p on itself (INVALID_ARGUMENT). See docs/friction.md.
  */
 typedef struct contact_normal_friction {
   /*
@@ -1002,11 +1005,11 @@ typedef struct contact_normal_friction {
    */
   int64_t struct_size;
   /*
-   mu of all elements, >= 0; default 0. Not read if there are `coefficients`.
+   The coefficient of friction mu of all elements, >= 0; default 0. Not read if there are `coefficients`.
    */
   double coefficient;
   /*
-   mu of each element, `[my][mx]`, or NULL (default).
+   The coefficient of friction mu of each element, `[my][mx]`, or NULL (default).
    */
   const double *coefficients;
   /*
@@ -1014,28 +1017,28 @@ typedef struct contact_normal_friction {
    */
   int32_t motion;
   /*
-   1: from the tractions that this handle found last, solves without friction aside (not in a batch); those of a
-   solve that stopped early, or was cancelled, count. 0 (default): `previous_traction`.
+   1: the tractions before the step are those of this handle's last solve with friction, also if it stopped early or was cancelled (not in a
+   batch). 0 (default): `previous_traction`.
    */
   int32_t continues;
   /*
-   Of x and y: CONTACT_NORMAL_PRESCRIBED_CREEPAGE or _TANGENTIAL_FORCE; default CREEPAGE.
+   In x and in y: CONTACT_NORMAL_PRESCRIBED_CREEPAGE or _TANGENTIAL_FORCE; default CREEPAGE.
    */
   int32_t prescribed[2];
   /*
-   In x and y; default 0. Not read where the force is prescribed.
+   The creepages in x and in y; default 0. Not read in a direction whose force is prescribed.
    */
   double creepage[2];
   /*
-   About the normal; default 0.
+   The spin about the normal; default 0.
    */
   double spin;
   /*
-   Where the spin turns about and the moment is taken, from the middle of the grid: lengths; default 0.
+   The axis of the spin and of the moment, relative to the middle of the grid, lengths; default 0.
    */
   double spin_centre[2];
   /*
-   The sum of q dx dy in x and y; default 0. Not read where the creepage is prescribed.
+   The forces in x and in y, the sums of q dx dy; default 0. Not read in a direction whose creepage is prescribed.
    */
   double force[2];
   /*
@@ -1043,39 +1046,39 @@ typedef struct contact_normal_friction {
    */
   double rolling_distance;
   /*
-   The direction of rolling: an angle from the x axis, in radians; default 0.
+   The direction of rolling: the angle from the x axis, in radians; default 0.
    */
   double rolling_direction;
   /*
-   In rolling with spin: the part of the step by which places are ahead; default 1/6.
+   In rolling, the slip due to spin is that at a point ahead of the element's centre, by this part of the length rolled; default 1/6.
    */
   double spin_offset;
   /*
-   The tractions before, in x and y, `[my][mx]` each, both or none; NULL (default): none, a start from rest.
+   The tractions before the step in x and in y, `[my][mx]` each, both or none; NULL (default): there are none, the bodies are at rest.
    */
   const double *previous_traction[2];
   /*
-   A rigid slip in addition, in x and y, lengths of the step, `[my][mx]` each, both or none; default NULL.
+   An additional rigid slip in x and in y, lengths per step, `[my][mx]` each, both or none; default NULL.
    */
   const double *rigid_slip[2];
   /*
-   Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
-   y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
-   even in x and in y, and xy odd in both (UNSUPPORTED otherwise). In steady rolling of like bodies y alone counts: coefficients that
-   are uneven in x are those of bodies that roll in one direction. Steps must then go in that direction, also where `scene->influence` is
-   uneven in x (INVALID_ARGUMENT otherwise). Rolling needs steps of whole elements, and tables that reach across the contact area and a
-   step. The tables belong to the set-up of a solver: later scenes may leave them out, and others are refused (INFLUENCE_CHANGED). With
-   `scene->influence` or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` must be given.
+   Tangential influence coefficients of your own instead of the half-space's. xx: the displacement in x by a unit traction in x; yy: that in y
+   by one in y; xy: that in x by one in y, and in y by one in x. All or none, default NULL; all with the same cx, cy and scale. xx and yy must
+   be even in x and in y, and xy odd in both (UNSUPPORTED otherwise). In steady rolling of like bodies this is needed in y only: coefficients
+   that are uneven in x belong to bodies that roll in one direction. Steps must have this direction, also if `scene->influence` is uneven in x
+   (INVALID_ARGUMENT otherwise). Rolling needs steps of whole elements, and tables that reach across the contact area and a step. The tables
+   belong to the set-up of a solver: later scenes may leave them out, and other tables are refused (INFLUENCE_CHANGED). With `scene->influence`
+   or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` must be given.
    */
   const struct contact_normal_influence *influence[3];
   /*
-   With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure; with the same cx, cy and
-   scale, both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions
-   then displace along the normal by -(xz qx + yz qy), and both problems are solved in turns.
+   With `influence`, for unlike bodies: xz and yz, the displacements in x and in y by a unit pressure, with the same cx, cy and scale, both or
+   none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions then displace the surfaces
+   along the normal by -(xz qx + yz qy), and the normal and the tangential problem are solved in turns.
    */
   const struct contact_normal_influence *influence_cross[2];
   /*
-   1: derivatives of forces and moment by creepages and spin, in `report->tangential.sensitivities`; default 0.
+   1: `report->tangential.sensitivities` gets the derivatives of the forces and the moment by creepages and spin; default 0.
    */
   int32_t sensitivities;
   /*
@@ -1083,36 +1086,36 @@ typedef struct contact_normal_friction {
    */
   int32_t reserved;
   /*
-   Tractions in x and y to start the iteration from, `[my][mx]` each, both or none; default NULL. The solution does not depend on them:
-   those of a step that differs little save most of the work. Where they are far from it, the iteration starts without them.
+   The initial guess of the tractions in x and in y, `[my][mx]` each, both or none; default NULL. The solution does not depend on it. The
+   tractions of a similar step save most of the work. If the guess is far from the solution, the iteration starts without it.
    */
   const double *initial_traction[2];
   /*
-   The compliance of a thin elastic layer between the bodies, a length per traction, >= 0: it displaces by that times the traction on
-   it. Of a third body of thickness h and shear modulus G it is h/G. Default 0: none. Not read if there are `compliances`.
+   The compliance of a thin elastic layer between the bodies, the tangential displacement per traction, >= 0. A third body of thickness h and
+   shear modulus G has h/G. Default 0: no layer. Not read if there are `compliances`.
    */
   double compliance;
   /*
-   That of each element, `[my][mx]`, or NULL (default).
+   The compliance of each element, `[my][mx]`, or NULL (default).
    */
   const double *compliances;
   /*
-   How much of a creepage in x, in y reaches each element, in [-1, 1], `[my][mx]` each, both or none; default NULL: 1. For surfaces that are
-   inclined within the contact area: the cosine. The forces that are prescribed are the sums of these times q dx dy.
+   The weights of the creepages in x and in y at each element, in [-1, 1], `[my][mx]` each, both or none; default NULL: 1. On a surface that is
+   inclined within the contact area a weight is the cosine. Prescribed forces are the sums of q dx dy times the weight.
    */
   const double *creepage_weight[2];
   /*
-   Own tangential influence coefficients that differ per loaded row, instead of `influence`: xx, yy and xy, the displacement in x by a
-   unit traction in x, in y by one in y, and in x by one in y. All or none, default NULL; all with the same cx, rows and scale. The
-   operator must be symmetric (UNSUPPORTED otherwise): xx of the loaded row jy and the row iy at offset k is xx of jy and iy exchanged at
-   -k, and so is yy. The displacement in y by a unit traction in x is xy of the rows exchanged at -k. Rolling needs steps of whole
-   elements along x; cx must reach across the contact area and a step. Otherwise as `influence`; unlike bodies are refused.
+   Tangential influence coefficients of your own that differ from loaded row to loaded row, instead of `influence`. xx: the displacement in x by
+   a unit traction in x; yy: that in y by one in y; xy: that in x by one in y. All or none, default NULL; all with the same cx, rows and scale.
+   The operator must be symmetric (UNSUPPORTED otherwise): if the loaded and the displaced row are exchanged, xx at offset -k equals xx at offset
+   k, and so does yy. The displacement in y by a unit traction in x is xy of the exchanged rows at -k. Rolling needs steps of whole elements
+   along x; cx must reach across the contact area and a step. All else is as for `influence`; unlike bodies are refused.
    */
   const struct contact_normal_row_tables *row_tables[3];
   /*
-   How mu falls with the slip velocity v: CONTACT_NORMAL_FRICTION_LAW_...; default COULOMB: not at all, and what goes with it is not
-   read. mu(v) is the coefficient times `(kinetic + falling[0] f(v) + falling[1] f(v))/(kinetic + falling[0] + falling[1])`, so that
-   `coefficient` is that at rest. Bodies must be alike, and `sensitivities` be 0 (UNSUPPORTED otherwise). See docs/laws.md.
+   How mu falls with the slip velocity v: CONTACT_NORMAL_FRICTION_LAW_...; default COULOMB: mu is constant, and the members of laws are not read.
+   mu(v) is the coefficient times `(kinetic + falling[0] f(v) + falling[1] f(v))/(kinetic + falling[0] + falling[1])`, so `coefficient` is mu at
+   rest. Bodies must be alike, and `sensitivities` must be 0 (UNSUPPORTED otherwise). See docs/laws.md.
    */
   int32_t law;
   /*
@@ -1120,56 +1123,56 @@ typedef struct contact_normal_friction {
    */
   int32_t reserved_for_law;
   /*
-   The part of mu that stays at high speed, >= 0; default 0. Only ratios of this and of `falling` count.
+   The part of mu that remains at high slip velocity, >= 0; default 0. Only the ratios of `kinetic` and `falling` matter.
    */
   double kinetic;
   /*
-   The parts of mu that fall, two of them, >= 0; default 0.
+   The two parts of mu that fall, >= 0; default 0.
    */
   double falling[2];
   /*
-   The slip velocity h of each part, at which half of it is left; > 0 where the part is.
+   The slip velocity h at which each falling part is a half of its value at rest; > 0 if the part is not 0.
    */
   double half_speed[2];
   /*
-   The speed of rolling, > 0: a step takes the length rolled divided by it, and v is the slip divided by that.
+   The speed of rolling, > 0. The duration of a step is the length rolled divided by this speed; v is the slip divided by the duration.
    */
   double speed;
   /*
-   The duration of a shift, > 0: a time.
+   The duration of a shift, > 0.
    */
   double time_step;
   /*
-   The distance of slip over which mu follows, >= 0; default 0: at once.
+   The distance of slip over which mu approaches mu(v), >= 0; default 0: mu is mu(v) at once.
    */
   double memory_distance;
   /*
-   The least slip velocity by which it follows, >= 0; default 0.
+   Below this slip velocity mu approaches mu(v) as fast as at this velocity, >= 0; default 0.
    */
   double memory_speed;
   /*
-   Of a layer between the bodies: the traction at which fresh material yields; `|q| <= min(mu p, yield_limit + hardening * slip)`. Default
-   0: it does not yield.
+   For a plastic layer between the bodies: the traction at which fresh material yields, `|q| <= min(mu p, yield_limit + hardening * slip)`.
+   Default 0: no layer yields.
    */
   double yield_limit;
   /*
-   The change of the limit by a length of plastic slip, a traction per length; < 0: it softens. Default 0: ideal plastic. Otherwise
-   bodies and `sensitivities` as with a `law`.
+   The change of the yield limit per plastic slip, a traction per length; < 0: the layer softens. Default 0: ideal plasticity. If it is not 0,
+   the rules for bodies and `sensitivities` are those of a `law`.
    */
   double hardening;
   /*
-   mu that particles of the interface had before the step, of a law with memory, `[my][mx]`; default NULL: that at rest, and with
-   `continues` what the handle found. Zeros alone, which a step without a law writes, count as NULL. In transient rolling a particle comes from its
-   old place; steady rolling does not read it.
+   For a law with memory: mu of the particles of the interface before the step, `[my][mx]`. Default NULL: mu at rest or, with `continues`, the
+   values of the handle. An array of zeros, which a step without a law writes, counts as NULL. In transient rolling these are the particles at
+   the elements before the step. Steady rolling does not read it.
    */
   const double *previous_coefficient;
   /*
-   Their yield limits; default NULL: `yield_limit`. Zeros alone count as NULL.
+   The yield limits of the same particles; default NULL: `yield_limit`. An array of zeros counts as NULL.
    */
   const double *previous_yield_limit;
   /*
-   Which solution, of a law or a layer that hardens or softens: CONTACT_NORMAL_FRICTION_BRANCH_...; default NEAR. Others take several times as many
-   products, and creepages in both directions (UNSUPPORTED otherwise).
+   The wanted solution, if a law, or a layer that hardens or softens, allows several: CONTACT_NORMAL_FRICTION_BRANCH_...; default NEAR. LOW and
+   HIGH take several times as many products, and need prescribed creepages in both directions (UNSUPPORTED otherwise).
    */
   int32_t branch;
   /*
@@ -1179,11 +1182,11 @@ typedef struct contact_normal_friction {
 } contact_normal_friction;
 
 /*
- Effect: attraction across the gap, `p = q - sigma(e)` with contact pressures q >= 0. The scene's force may then be negative. Pressures
- are total ones, negative where the bodies pull at each other; `contact` is 1 where e = 0. A work of 0 is no adhesion. Several states may
- belong to one approach: `start` chooses one, and initial_guess PREVIOUS follows the one before. To a force belong unstable
- states as well, which are refused, and maybe several stable ones, with dF/dapproach > 0; below the pull-off force none is found
- (INFEASIBLE). See docs/adhesion.md.
+ Effect: adhesion. The surfaces attract each other across the gap, `p = q - sigma(e)`, with contact pressures q >= 0. Then the scene's force may be
+ negative (a pull). Pressures p are total ones, negative where the attraction is the larger part; `contact` is 1 where e = 0. A work of adhesion of
+ 0 is no adhesion. Several states may belong to one approach: `start` chooses one, and initial_guess PREVIOUS follows the state before. Unstable
+ states may belong to a force; these are not returned. There may also be several stable states of a force, with dF/dapproach > 0. No state is found
+ for a pull stronger than the pull-off force (INFEASIBLE). See docs/adhesion.md.
  */
 typedef struct contact_normal_adhesion {
   /*
@@ -1195,45 +1198,46 @@ typedef struct contact_normal_adhesion {
    */
   int32_t law;
   /*
-   CONTACT_NORMAL_START_...; default AUTO. Read where the approach is given and initial_guess is NONE.
+   CONTACT_NORMAL_START_...; default AUTO. Read only if the approach is prescribed and initial_guess is NONE.
    */
   int32_t start;
   /*
-   w of all elements, an energy per area, >= 0; default 0. Not read if there are `works_of_adhesion`.
+   The work of adhesion w of all elements, an energy per area, >= 0; default 0. Not read if there are `works_of_adhesion`.
    */
   double work_of_adhesion;
   /*
-   That of each element, `[my][mx]`, or NULL (default).
+   The work of adhesion of each element, `[my][mx]`, or NULL (default).
    */
   const double *works_of_adhesion;
   /*
-   rho, a length; default 0: the shortest that the elements carry. `report->adhesion.range` says which was used.
+   The range rho of the attraction, a length; default 0: the shortest range that the elements resolve. `report->adhesion.range` has the range
+   used.
    */
   double range;
   /*
-   DUGDALE: the part of the range over which its edge is smeared, in [1e-6, 1]; default 0.3.
+   DUGDALE: sigma falls to 0 between (1 - smear) rho and (1 + smear) rho, in [1e-6, 1]; default 0.3.
    */
   double smear;
   /*
-   1: dF/dapproach, in `report->adhesion.stiffness`; default 0.
+   1: `report->adhesion.stiffness` gets dF/dapproach; default 0.
    */
   int32_t stiffness;
   /*
-   1: how near the state is to a snap, in `report->adhesion.stability`, for 10 to 100 products; default 0.
+   1: `report->adhesion.stability` gets the stability margin of the state, which takes 10 to 100 products; default 0.
    */
   int32_t stability;
   /*
-   tau0, a traction >= 0, default 0: with friction the bound in contact is `mu q + tau0`, q being the contact pressure. Not read without
-   friction.
+   The shear strength tau0, a traction >= 0; default 0. With friction the traction bound in contact is `mu q + tau0`, where q is the contact
+   pressure. Not read without friction.
    */
   double shear_strength;
 } contact_normal_adhesion;
 
 /*
- Effect: bodies that relax, and a step of `time_step` of them. The `shear_modulus` of the scene is that at once, and falls to
- `G(t) = G - sum of modulus (1 - exp(-t/time))` at a constant Poisson ratio; of a coated body it is that of the coating, on a rigid body. A
- solver handle remembers the steps before: the first step has `continues` 0, the others 1. `displacement` and `deformed_distance` contain what is
- left of the steps before. A step that stops early counts as a step. See docs/visco.md.
+ Effect: viscoelastic bodies, which relax, and a step in time of duration `time_step`. The `shear_modulus` of the scene is the instantaneous one.
+ It falls to `G(t) = G - sum of modulus (1 - exp(-t/time))` at a constant Poisson ratio. The branches of a coated body are those of the coating,
+ and the body below must be rigid. A solver handle keeps the history of the steps: the first step has `continues` 0, the others 1. `displacement`
+ and `deformed_distance` contain the displacements that earlier steps left. A step that stops early counts as a step. See docs/visco.md.
  */
 typedef struct contact_normal_visco {
   /*
@@ -1241,19 +1245,20 @@ typedef struct contact_normal_visco {
    */
   int64_t struct_size;
   /*
-   Branches of body 1 and body 2, 0 (default: an elastic body) to 32.
+   The number of branches of body 1 and of body 2: 0 (default: an elastic body) to 32.
    */
   int32_t branches[2];
   /*
-   Moduli of the branches of each body, pressures >= 0 that add up to at most its shear modulus. Default NULL: to be set where there are branches.
+   The moduli of the branches of each body, pressures >= 0 whose sum is at most the body's shear modulus. Default NULL: to be set if there are
+   branches.
    */
   const double *modulus[2];
   /*
-   Relaxation times of the branches, > 0. Default NULL: to be set where there are branches.
+   The relaxation times of the branches of each body, > 0. Default NULL: to be set if there are branches.
    */
   const double *time[2];
   /*
-   Time of the step, >= 0; default 0: the load jumps, and the bodies give way at once.
+   The duration of the step, >= 0; default 0: the load jumps, and the bodies respond instantaneously.
    */
   double time_step;
   /*
@@ -1261,14 +1266,14 @@ typedef struct contact_normal_visco {
    */
   int32_t form;
   /*
-   1: the step begins where the last one of the solver ended; 0 (default): at rest, at time 0.
+   1: the step begins where the last step of the solver ended; 0 (default): the bodies are at rest before, at time 0.
    */
   int32_t continues;
 } contact_normal_visco;
 
 /*
  The scene to simulate: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
- system of units.
+ system of units may be used.
  */
 typedef struct contact_normal_scene {
   /*
@@ -1284,27 +1289,29 @@ typedef struct contact_normal_scene {
    */
   int32_t my;
   /*
-   Element size in x: a length, positive; default 0: to be set.
+   Element size in x, a positive length; default 0: to be set.
    */
   double dx;
   /*
-   Element size in y; default 0: to be set.
+   Element size in y, a positive length; default 0: to be set.
    */
   double dy;
   /*
-   h, the gap between the surfaces before they deform, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
+   The undeformed distance h, the gap between the surfaces before they deform, `[my][mx]`, x fastest, a length. +infinity: there is no surface,
+   and the element stays exterior. Default NULL: to be set.
    */
   const double *undeformed_distance;
   /*
-   G of the two bodies: a pressure, positive; +infinity: rigid (one surface at most, below a coating both). Default 0: to be set.
+   The shear moduli G of both bodies, positive pressures; +infinity: rigid (one surface at most; both bodies if a coating covers one). Default 0:
+   to be set.
    */
   double shear_modulus[2];
   /*
-   nu of the two bodies, in (-1, 0.5]; default 0.
+   The Poisson ratios nu of both bodies, in (-1, 0.5]; default 0.
    */
   double poisson_ratio[2];
   /*
-   CONTACT_NORMAL_PRESCRIBED_APPROACH or _FORCE: that one is read, the other is not. Default UNSET: the one that is set.
+   CONTACT_NORMAL_PRESCRIBED_APPROACH: only `approach` is read. _FORCE: only `force` is read. Default UNSET: the one that is set.
    */
   int32_t load;
   /*
@@ -1312,19 +1319,19 @@ typedef struct contact_normal_scene {
    */
   int32_t reserved;
   /*
-   Prescribed approach (indentation, penetration): a length. Default NaN: not set.
+   The prescribed approach (indentation, penetration), a length. Default NaN: not set.
    */
   double approach;
   /*
-   Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED or with adhesion also negative. Default NaN: not set.
+   The prescribed force, the sum of p dx dy, >= 0; with active_set FIXED or with adhesion it may be negative. Default NaN: not set.
    */
   double force;
   /*
-   Effect, or NULL (default): own coefficients instead of the half-space. The elastic constants are then not used.
+   Effect, or NULL (default): influence coefficients of your own instead of the half-space's. The elastic constants are then not used.
    */
   const struct contact_normal_influence *influence;
   /*
-   Effect, or NULL (default): a thin compliant layer.
+   Effect, or NULL (default): a thin compliant layer between the bodies.
    */
   const struct contact_normal_layer *layer;
   /*
@@ -1332,19 +1339,20 @@ typedef struct contact_normal_scene {
    */
   const struct contact_normal_pressure_limit *pressure_limit;
   /*
-   Effect, or NULL (default): the scene repeats itself.
+   Effect, or NULL (default): the scene is periodic in x, in y or in both.
    */
   const struct contact_normal_period *period;
   /*
-   Effect, or NULL (default): several contact patches, whose interaction is scaled.
+   Effect, or NULL (default): several contact patches, with factors on the influence of each patch on the others.
    */
   const struct contact_normal_patches *patches;
   /*
-   Effect, or NULL (default): own coefficients, one table per loaded row. The elastic constants are then not used.
+   Effect, or NULL (default): influence coefficients of your own, one table per loaded row. The elastic constants are then not used.
    */
   const struct contact_normal_row_tables *row_tables;
   /*
-   Effect, or NULL (default): a coating on body 1 (`coating[0]`), on body 2. The elastic constants are then those of the bodies below.
+   Effect, or NULL (default): a coating on body 1 (`coating[0]`) and on body 2 (`coating[1]`). The elastic constants of the scene are then those
+   of the body below the coating.
    */
   const struct contact_normal_coating *coating[2];
   /*
@@ -1356,7 +1364,7 @@ typedef struct contact_normal_scene {
    */
   const struct contact_normal_adhesion *adhesion;
   /*
-   Effect, or NULL (default): bodies that relax, and a step of time of them.
+   Effect, or NULL (default): viscoelastic bodies, and a step in time.
    */
   const struct contact_normal_visco *visco;
 } contact_normal_scene;
@@ -1366,23 +1374,24 @@ typedef struct contact_normal_scene {
  */
 typedef struct contact_normal_progress {
   /*
-   Size of this struct in the library.
+   The size of this struct in the library.
    */
   int64_t struct_size;
   /*
-   Elements in x of the grid that the cycle was on.
+   Elements in x of the grid of the last cycle.
    */
   int32_t mx;
   /*
-   Elements in y.
+   Elements in y of that grid.
    */
   int32_t my;
   /*
-   Cycles on that grid so far. Iterations of the tangential problem, and with adhesion those on coarser grids, are told but not counted.
+   Cycles on that grid so far. The callback is also called after iterations of the tangential problem and, with adhesion, of coarser grids;
+   these do not count.
    */
   int64_t cycles;
   /*
-   Elements that changed sides in the last cycle.
+   Elements that the last cycle moved between contact area, exterior area and pressure limit.
    */
   int64_t active_set_changes;
   /*
@@ -1390,7 +1399,7 @@ typedef struct contact_normal_progress {
    */
   double seconds;
   /*
-   Work units since then.
+   Work units since the solve began.
    */
   double work_units;
   /*
@@ -1404,8 +1413,8 @@ typedef struct contact_normal_progress {
 } contact_normal_progress;
 
 /*
- Called after each cycle, on the calling thread, in its floating-point environment; non-zero cancels. The handle that is solving
- refuses to be used.
+ A callback that is called after each cycle, on the calling thread and in its floating-point environment. If it returns non-zero, the call is
+ cancelled. The callback must not use the handle that is solving: such calls are refused.
  */
 typedef int32_t (*contact_normal_progress_callback)(const struct contact_normal_progress *progress,
                                                     void *user);
@@ -1423,11 +1432,11 @@ typedef struct contact_normal_cycle {
    */
   int32_t smoother;
   /*
-   n1 of V(n1, n2); default 1.
+   The number n1 of sweeps before the coarse grid in the cycle V(n1, n2); default 1.
    */
   int32_t pre_sweeps;
   /*
-   n2 of V(n1, n2); default 1.
+   The number n2 of sweeps after the coarse grid in the cycle V(n1, n2); default 1.
    */
   int32_t post_sweeps;
   /*
@@ -1435,13 +1444,13 @@ typedef struct contact_normal_cycle {
    */
   int32_t coarsest;
   /*
-   omega, in (0, 2); default 0: what suits the smoother.
+   The relaxation factor omega, in (0, 2); default 0: the factor that suits the smoother.
    */
   double relaxation;
 } contact_normal_cycle;
 
 /*
- How a scene is solved; the defaults suit everybody.
+ How a scene is solved. The defaults suit most users.
  */
 typedef struct contact_normal_options {
   /*
@@ -1465,21 +1474,22 @@ typedef struct contact_normal_options {
    */
   int32_t criterion;
   /*
-   Of the criterion, between 0 and 1 (p = 0 has a residual of 1); default 1e-6.
+   The tolerance of the criterion, between 0 and 1 (p = 0 has a residual of 1); default 1e-6.
    */
   double tolerance;
   /*
-   > 0: may stop once the residual is below this part of the estimated discretisation error; OK then means the larger tolerance
-   that `report->normal.tolerance` says. NORM and MULTIGRID, and scenes without an estimate, keep the tolerance. Default 0: the tolerance above.
+   > 0: the solve may stop once the residual is below this part of the estimated discretisation error. OK then refers to the larger tolerance in
+   `report->normal.tolerance`. NORM and MULTIGRID, and scenes without an estimate, keep `tolerance`. Default 0: `tolerance` holds.
    */
   double error_ratio;
   /*
-   Cycles, or iterations of conjugate gradients or steps of GMRES, on the finest grid at most; default 1000. The first way to a pull (adhesion,
-   force < 0) may take three times as many, and each further way as many, or four times those of the first and 500 if that is more.
+   The largest number of cycles, or of iterations of conjugate gradients or steps of GMRES, on the finest grid; default 1000. For a pull
+   (adhesion, force < 0) the first path of the search may take three times as many. Each further path may take as many or, if that is more, 500
+   plus four times the cycles of the first path.
    */
   int32_t max_cycles;
   /*
-   Threads; default 1: safe beside OpenMP and MPI; 0: all cores.
+   The number of threads; default 1, which is safe beside OpenMP and MPI; 0: all cores.
    */
   int32_t threads;
   /*
@@ -1491,7 +1501,7 @@ typedef struct contact_normal_options {
    */
   int32_t reserved;
   /*
-   Called after each cycle, or NULL (default).
+   The progress callback, which is called after each cycle, or NULL (default).
    */
   contact_normal_progress_callback progress;
   /*
@@ -1499,35 +1509,36 @@ typedef struct contact_normal_options {
    */
   void *user;
   /*
-   The cycle of the paper's methods, MULTIGRID and FULL_MULTIGRID; NULL (default): that of the defaults.
+   The cycle of the paper's methods, MULTIGRID and FULL_MULTIGRID; NULL (default): the cycle that `contact_normal_cycle_init` makes.
    */
   const struct contact_normal_cycle *cycle;
   /*
-   Seconds of a call at most, looked at after each cycle: then ITERATION_LIMIT, and outputs hold the best iterate. In a batch those of
-   the whole call. Default 0: no limit.
+   The largest number of seconds of a call, tested after each cycle. The call then ends with ITERATION_LIMIT, and outputs hold the best iterate.
+   In a batch the limit is that of the whole call. Default 0: no limit.
    */
   double max_seconds;
   /*
-   An integer that any thread may set, or NULL (default): once it is not 0, the call ends as CANCELLED after the cycle that it is in.
+   An integer that any thread may set, or NULL (default). Once it is not 0, the call ends with CANCELLED after the present cycle.
    */
   const int32_t *stop;
   /*
-   The path of a file, or NULL (default): where a call that ends neither as OK nor as CANCELLED writes its arguments, for
-   `contact-normal-replay` (docs/dump.md); not by `contact_normal_quantities` and `contact_normal_effects_bill`. %p in it is the number of
-   the process, %n that of the dump in the process, %% a %.
+   The path of a file, or NULL (default). A call that ends neither with OK nor with CANCELLED writes its arguments to this file, for
+   `contact-normal-replay` (docs/dump.md); `contact_normal_quantities` and `contact_normal_effects_bill` do not. In the path %p is the number of
+   the process, %n the number of the dump in the process, and %% a %.
    */
   const char *dump;
   /*
-   > 0, of `contact_normal_solve` alone: effects whose omission changes force or approach, largest pressure, area and tangential forces by
-   less than this part, as `contact_normal_effects_bill` says, are left out; `report->accuracy.neglected` has which. Friction stays.
-   `progress` is told of the cycles on the small grids that show it. Below 1. Default 0: nothing is left out. Since 0.2.
+   > 0, for `contact_normal_solve` only: leaves out effects whose omission changes force or approach, largest pressure, area and tangential
+   forces by less than this part, as `contact_normal_effects_bill` estimates on small grids; `report->accuracy.neglected` has these effects.
+   Friction, adhesion, a pressure limit and the relaxation of bodies are never left out. `progress` is also called for the cycles on the small
+   grids. Below 1. Default 0: nothing is left out. Since 0.2.
    */
   double neglect_below;
 } contact_normal_options;
 
 /*
- Arrays of the caller's, `[my][mx]`, x fastest. NULL (the default of each): not wanted. Written only when the status is >= 0. No
- array may overlap with another one, nor with anything that is read.
+ The caller's arrays for the result of a solve, `[my][mx]` each, x fastest. NULL (the default of each): not wanted. They are written only if the
+ status is >= 0. No array may overlap with another one, nor with anything that the call reads.
  */
 typedef struct contact_normal_fields {
   /*
@@ -1535,55 +1546,56 @@ typedef struct contact_normal_fields {
    */
   int64_t struct_size;
   /*
-   p. Read as the initial guess when that is GIVEN. Exactly 0 outside the contact area, but with adhesion: that acts there.
+   The pressure p. It is read as the initial guess if initial_guess is GIVEN. Outside the contact area p is exactly 0, except with adhesion,
+   which acts there.
    */
   double *pressure;
   /*
-   e = h - approach + A p; +infinity where there is no surface.
+   The deformed distance e = h - approach + A p; +infinity where there is no surface.
    */
   double *deformed_distance;
   /*
-   u = A p.
+   The displacement u = A p.
    */
   double *displacement;
   /*
-   0: exterior, 1: contact, 2: at the pressure limit. Read (non-zero: contact) with initial_guess GIVEN and with
-   active_set FIXED: then it is not written, and keeps whatever codes it has.
+   0: exterior, 1: contact, 2: at the pressure limit. It is read (non-zero: contact) with initial_guess GIVEN and with active_set FIXED. With
+   FIXED it is not written and keeps your codes.
    */
   int32_t *contact;
   /*
-   With friction: tractions q on body 1, in x and y; 0 where there is no contact, and without friction.
+   With friction: the tractions q on body 1, in x and in y. 0 where there is no contact, and without friction.
    */
   double *traction[2];
   /*
-   With friction: the slip s of the step, in x and y, a length; 0 where there is no contact, and without friction.
+   With friction: the slip s of the step, in x and in y, a length. 0 where there is no contact, and without friction.
    */
   double *slip[2];
   /*
-   With friction: CONTACT_NORMAL_STICK_SLIP_... of each element; EXTERIOR without friction.
+   With friction: CONTACT_NORMAL_STICK_SLIP_... of each element. Without friction: EXTERIOR.
    */
   int32_t *stick_slip;
   /*
-   With adhesion: q = p + sigma in contact, 0 outside; without adhesion p.
+   With adhesion: the contact pressure q = p + sigma in contact, and 0 outside. Without adhesion: p.
    */
   double *contact_pressure;
   /*
-   With adhesion: sigma(e) >= 0; 0 without adhesion.
+   With adhesion: the attraction sigma(e) >= 0. Without adhesion: 0.
    */
   double *attraction;
   /*
-   With a law of friction or a layer that yields: mu that particles carry after the step; else 0.
+   With a law of friction or a layer that yields: the coefficient mu of the particles after the step. Else 0.
    */
   double *friction_coefficient;
   /*
-   With a layer that yields: the limits that particles carry after the step; else 0.
+   With a layer that yields: the yield limits of the particles after the step. Else 0.
    */
   double *yield_limit;
 } contact_normal_fields;
 
 /*
- One row of the ledger: the results on one grid, and their cost so far. Estimated errors are absolute; negative: not
- known, and if the bit is set in `untrusted`, not to be known from these grids.
+ One row of the ledger: the results on one grid, and the cost so far. Estimated errors are absolute. A negative error is not known; if its bit is
+ set in `untrusted`, it cannot be estimated from the grids of this solve.
  */
 typedef struct contact_normal_ledger_row {
   /*
@@ -1595,11 +1607,11 @@ typedef struct contact_normal_ledger_row {
    */
   int32_t mx;
   /*
-   Elements in y.
+   Elements in y of the grid.
    */
   int32_t my;
   /*
-   Cycles on it.
+   Cycles on the grid.
    */
   int64_t cycles;
   /*
@@ -1607,7 +1619,7 @@ typedef struct contact_normal_ledger_row {
    */
   double seconds;
   /*
-   Work units since then: products, each weighted by its elements over those of the finest grid.
+   Work units since the solve began: products u = A p, each weighted by the ratio of its elements to those of the finest grid.
    */
   double work_units;
   /*
@@ -1627,7 +1639,7 @@ typedef struct contact_normal_ledger_row {
    */
   double max_pressure;
   /*
-   Contact area: that of the elements in contact.
+   Contact area: the area of the elements in contact.
    */
   double contact_area;
   /*
@@ -1635,23 +1647,23 @@ typedef struct contact_normal_ledger_row {
    */
   double corrected_area;
   /*
-   Estimated error of the force (of the approach, when the force is prescribed).
+   Estimated error of the force, or of the approach if the force is prescribed.
    */
   double error_force;
   /*
-   Of the largest pressure.
+   Estimated error of the largest pressure.
    */
   double error_max_pressure;
   /*
-   Of the contact area.
+   Estimated error of the contact area.
    */
   double error_contact_area;
   /*
-   Of the corrected area.
+   Estimated error of the corrected area.
    */
   double error_corrected_area;
   /*
-   Of the pressures: rms of the error over that of p.
+   Estimated error of the pressures: the rms of the error divided by the rms of p.
    */
   double error_pressure;
   /*
@@ -1689,7 +1701,7 @@ typedef struct contact_normal_report_normal {
    */
   double min_pressure;
   /*
-   Contact area: that of the elements in contact.
+   Contact area: the area of the elements in contact.
    */
   double contact_area;
   /*
@@ -1701,21 +1713,22 @@ typedef struct contact_normal_report_normal {
    */
   int64_t contact_count;
   /*
-   Elements in contact on the first or last row or column: with any, the potential contact area may be too small.
+   Elements in contact in the first or last row or column. If there are any, the potential contact area may be too small.
    */
   int64_t edge_count;
   /*
-   The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
-   an accuracy asks for.
+   The tolerance to which the status refers: that of the options, or a larger one that `error_ratio` allows, or the one that a solve to
+   an accuracy chooses.
    */
   double tolerance;
   /*
-   `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision. With adhesion relative to what the
-   pressures of C displace their own elements by, where that is more, and at least what a force that is given lacks, relative to the sum of |p|.
+   `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision. With adhesion the norm of the
+   displacements of the elements of C by their own pressures replaces the denominator if it is larger. With adhesion and a given force the
+   residual is at least the missing part of the force, relative to the sum of |p| dx dy.
    */
   double residual;
   /*
-   Largest -e outside C, or e of an element at its pressure limit; 0 if there is none: a length.
+   The largest penetration -e outside C, or gap e of an element at its pressure limit, a length; 0 if there is none.
    */
   double violation;
   /*
@@ -1737,25 +1750,27 @@ typedef struct contact_normal_report_normal {
  */
 typedef struct contact_normal_report_tangential {
   /*
-   The sum of q dx dy in x and y, on body 1.
+   The forces on body 1 in x and in y: the sums of q dx dy.
    */
   double force[2];
   /*
-   The sum of (x qy - y qx) dx dy about the centre of spin.
+   The moment about the centre of spin: the sum of (x qy - y qx) dx dy.
    */
   double moment;
   /*
-   Creepages in x and y, given or found.
+   The creepages in x and in y, prescribed or computed.
    */
   double creepage[2];
   /*
-   rms over C of the wrong part of the slip, relative to the rigid slip, with a fresh product in double precision. Wrong is all slip of an
-   element that sticks, and the part that is not opposite to q where one slips. In a shift, and in steady rolling by a force, it is relative
-   to the displacements where these are larger; otherwise to 1.5e-8 of the displacements, now and before the step, at least: their round-off.
+   The rms over C of the wrong part of the slip, divided by the rms of the rigid slip, with a fresh product in double precision. Wrong is the
+   whole slip of an element that sticks, and the part that is not opposite to q of an element that slips. In a shift, and in steady rolling with
+   a prescribed force, the rms of the displacements replaces the divisor if it is larger. In other cases the divisor is at least 1.5e-8 of the
+   displacements now and before the step, which is their round-off.
    */
   double residual;
   /*
-   `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only. Without a rigid slip the scale of the residual is in its place.
+   `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only. Without a rigid slip the divisor of the residual replaces
+   |rigid slip|.
    */
   double gap;
   /*
@@ -1767,18 +1782,18 @@ typedef struct contact_normal_report_tangential {
    */
   int64_t slip_count;
   /*
-   If `friction->sensitivities` is 1, else 0: derivatives of `force` in x, in y and of `moment`, each by the creepages in x and y and by
-   the spin; `[3][3]`, row by row. Creepages that are found count as given. Of unlike bodies the pressures follow the tractions, but
-   those of `contact_normal_solve_tangential` are held. 0 after CANCELLED.
+   If `friction->sensitivities` is 1, else 0: the derivatives of the force in x (row 0), of the force in y (row 1) and of the moment (row 2)
+   by the creepage in x, by the creepage in y and by the spin, `[3][3]`. Computed creepages are varied as if they were prescribed. The pressures
+   of unlike bodies change with the tractions, except in `contact_normal_solve_tangential`, whose pressures are given. 0 after CANCELLED.
    */
   double sensitivities[9];
   /*
-   rms over C of the last change of q; 0 where the iteration ended where it began.
+   rms over C of the last change of q; 0 if the initial guess was not changed.
    */
   double update;
   /*
-   The largest slope by which bounds fall with the slip, memory included, times an element's influence on itself; 0 without a law. From .5 on the
-   iteration may end as STAGNATED, from 1 on a single element has several solutions.
+   The largest slope by which the traction bounds fall with the slip, with the effect of memory, times an element's influence on itself; 0
+   without a law. From 0.5 on the iteration may end as STAGNATED. From 1 on a single element has several solutions.
    */
   double law_slope;
   /*
@@ -1788,34 +1803,34 @@ typedef struct contact_normal_report_tangential {
 } contact_normal_report_tangential;
 
 /*
- The estimated errors: a group of `contact_normal_report`. They are estimated after a start from nothing, and after any start if there is a
- ledger. They are absolute, and < 0 where they are not known.
+ The estimated errors: a group of `contact_normal_report`. Errors are estimated if the solve has no initial guess, or if there is room for a
+ ledger. They are absolute, and < 0 if they are not known.
  */
 typedef struct contact_normal_report_accuracy {
   /*
-   Estimated error of the force (of the approach, when the force is prescribed).
+   Estimated error of the force, or of the approach if the force is prescribed.
    */
   double error_force;
   /*
-   Of the largest pressure.
+   Estimated error of the largest pressure.
    */
   double error_max_pressure;
   /*
-   Of the contact area.
+   Estimated error of the contact area.
    */
   double error_contact_area;
   /*
-   Of the corrected area.
+   Estimated error of the corrected area.
    */
   double error_corrected_area;
   /*
-   Of the pressures: rms of the error over that of p.
+   Estimated error of the pressures: the rms of the error divided by the rms of p.
    */
   double error_pressure;
   /*
-   Of the tangential force in x and y, or of the creepage where the force is prescribed. They are estimated when `error_force` is, of
-   shifts from rest, and for bodies that are alike of steady rolling from rest; with a law of friction, or a layer that hardens or softens, of
-   shifts by creepages only.
+   Estimated errors of the tangential forces in x and in y, or of the creepage in a direction whose force is prescribed. They are known only if
+   `error_force` is: for shifts from rest and, for like bodies, for steady rolling from rest. With a law of friction, or a layer that hardens or
+   softens, they are known for shifts with prescribed creepages only.
    */
   double error_tangential[2];
   /*
@@ -1823,15 +1838,15 @@ typedef struct contact_normal_report_accuracy {
    */
   int32_t untrusted;
   /*
-   The limit of the accuracy: CONTACT_NORMAL_LIMITED_BY_...
+   What limits the accuracy: CONTACT_NORMAL_LIMITED_BY_...
    */
   int32_t limited_by;
   /*
-   About the seconds of a solve with elements of half the size; < 0: not known.
+   The approximate seconds of a solve with elements of half the size; < 0: not known.
    */
   double halved_seconds;
   /*
-   And the error of the force (or the approach) that it would leave.
+   The estimated error of the force (or of the approach) with elements of half the size; < 0: not known.
    */
   double halved_error_force;
   /*
@@ -1839,7 +1854,7 @@ typedef struct contact_normal_report_accuracy {
    */
   int64_t neglected;
   /*
-   By how much that may be wrong: the largest relative change of a quantity, its error included. Since 0.2.
+   The error because of the effects that are left out: the largest relative change of a quantity, with the error of this change. Since 0.2.
    */
   double neglected_error;
   /*
@@ -1861,7 +1876,7 @@ typedef struct contact_normal_report_statistics {
    */
   int64_t active_set_steps;
   /*
-   Elements that entered or left the contact area in them, in all.
+   Elements that entered or left the contact area, added up over all cycles on the finest grid.
    */
   int64_t active_set_changes;
   /*
@@ -1869,15 +1884,15 @@ typedef struct contact_normal_report_statistics {
    */
   int64_t matrix_products;
   /*
-   Products on all grids, in products on the finest.
+   Products u = A p on all grids, in units of products on the finest grid.
    */
   double work_units;
   /*
-   With friction: products of two components on all grids, in products on the finest.
+   With friction: products of two components on all grids, in units of such products on the finest grid.
    */
   double tangential_products;
   /*
-   Seconds of set-up: 0 for later solves with a handle.
+   Seconds of the set-up; 0 for later solves with a handle.
    */
   double setup_seconds;
   /*
@@ -1889,7 +1904,7 @@ typedef struct contact_normal_report_statistics {
    */
   double tangential_seconds;
   /*
-   Bytes held by operators and unknowns.
+   Bytes that operators and unknowns take.
    */
   int64_t bytes;
   /*
@@ -1903,11 +1918,11 @@ typedef struct contact_normal_report_statistics {
  */
 typedef struct contact_normal_report_adhesion {
   /*
-   The sum of contact pressures q dx dy.
+   The sum of q dx dy, the contact pressures.
    */
   double repulsive_force;
   /*
-   The sum of -sigma dx dy: <= 0. Both together are `normal.force`.
+   The sum of -sigma dx dy, <= 0. `repulsive_force` and `adhesive_force` add up to `normal.force`.
    */
   double adhesive_force;
   /*
@@ -1915,39 +1930,42 @@ typedef struct contact_normal_report_adhesion {
    */
   double elastic_energy;
   /*
-   Less the work that the attraction has done: <= 0. The change of both energies by the approach is the force.
+   The energy of the attraction, <= 0: minus the work that the attraction has done. The derivative of both energies together by the approach is
+   the force.
    */
   double adhesive_energy;
   /*
-   `||p + sigma(e)|| / ||p||`, the first outside C, 2-norms, with a fresh product. It is at most the tolerance, as the
-   residual is. Where contact pressures and attraction cancel, the scale is 1e-3 `||q||`.
+   `||p + sigma(e)|| / ||p||`, 2-norms with a fresh product, the numerator over the elements outside C. If the status is OK it is at most the
+   tolerance. If contact pressures and attraction almost cancel, 1e-3 `||q||` replaces the denominator.
    */
   double law_residual;
   /*
-   rho as it was used, a length.
+   The range rho that was used, a length.
    */
   double range;
   /*
-   kappa: the largest stiffness of the attraction, times what an element displaces itself by. Above 1/2 the elements are too coarse for
-   the range, and the bits of `accuracy.untrusted` are set; above 1 an element snaps alone.
+   kappa: the largest stiffness of the attraction, times an element's influence on itself. Above 1/2 the elements are too coarse for the range,
+   and the bits of `accuracy.untrusted` are set. Above 1 a single element is unstable and snaps.
    */
   double resolution;
   /*
-   The part of the attraction that acts on the border of the grid: the grid does not contain it where that is more than 0.001.
+   The part of the attraction that acts on the border of the grid. Above 0.001 the grid is too small for the attraction.
    */
   double border_share;
   /*
-   dF/dapproach if `adhesion->stiffness` is 1 and the status is OK, else 0. Infinite where all elements of two periods are in contact.
+   dF/dapproach if `adhesion->stiffness` is 1 and the status is OK, else 0. In a scene with two periods it is infinite if all elements are in
+   contact.
    */
   double stiffness;
   /*
-   1 - lambda if `adhesion->stability` is 1 and the status is OK, else 0; lambda is the largest eigenvalue of how a change of the attraction outside the
-   contact comes back to itself. Positive in a stable state (of a given approach), near 0 where a small step may snap.
+   The stability margin 1 - lambda if `adhesion->stability` is 1 and the status is OK, else 0. A change of the attraction outside the contact
+   moves the surfaces there, which changes the attraction again; lambda is the largest eigenvalue of this feedback. The margin is positive in a
+   stable state (of a given approach), and near 0 if a small step may cause a snap.
    */
   double stability;
   /*
-   1: the bodies have snapped: the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the elements in contact
-   are more, or fewer, by more than a quarter; else 0.
+   1: the bodies have snapped: the branch of the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the number of elements
+   in contact has changed by more than a quarter. Else 0.
    */
   int32_t jumped;
   /*
@@ -1965,19 +1983,20 @@ typedef struct contact_normal_report_adhesion {
  */
 typedef struct contact_normal_report_visco {
   /*
-   Since the bodies were at rest: the sum of the steps.
+   The time since the bodies were at rest: the sum of the time steps.
    */
   double time;
   /*
-   How far this step may be off: the difference between its form and another one, rms of the displacements in contact relative to that of h - approach.
+   An estimate of the error of this step: the difference of the displacements in contact between the form of the step and another form, rms,
+   relative to the rms of h - approach.
    */
   double step_error;
   /*
-   The same of all steps since the bodies were at rest, added up: how far the result may be off. 0 without contact.
+   An estimate of the error of the result: the sum of the errors of all steps since the bodies were at rest. 0 without contact.
    */
   double time_error;
   /*
-   The compliance of the bodies in the step, relative to that at once.
+   The compliance of the bodies in the step, relative to the instantaneous one.
    */
   double compliance;
   /*
@@ -1987,8 +2006,8 @@ typedef struct contact_normal_report_visco {
 } contact_normal_report_visco;
 
 /*
- The results of a solve and its cost, in groups. Written only when the status is >= 0. Later versions put new members into the room at the end
- of a group, and new groups at the end of the report. Members that the library does not know are 0.
+ The results and the cost of a solve, in groups. The report is written only if the status is >= 0. Later versions put new members into the room at
+ the end of a group, and new groups at the end of the report. Members that the library does not know are 0.
  */
 typedef struct contact_normal_report {
   /*
@@ -1996,19 +2015,19 @@ typedef struct contact_normal_report {
    */
   int64_t struct_size;
   /*
-   Rows of the whole ledger: one per grid, coarsest first. If there is room for fewer, those of the finest grids are written.
+   The number of rows of the whole ledger: one per grid, coarsest first. If there is room for fewer, the rows of the finest grids are written.
    */
   int64_t ledger_rows;
   /*
-   In: room in `ledger`; default 0.
+   In: the number of rows for which `ledger` has room; default 0.
    */
   int64_t ledger_capacity;
   /*
-   In: the caller's array, or NULL (default). Its first row is filled by `contact_normal_ledger_row_init`.
+   In: the caller's array, or NULL (default). `contact_normal_ledger_row_init` must have filled the first row.
    */
   struct contact_normal_ledger_row *ledger;
   /*
-   Warnings, even where the status is OK: CONTACT_NORMAL_WARNING_... bits. `contact_normal_last_error` has them in words.
+   Warnings, also if the status is OK: CONTACT_NORMAL_WARNING_... bits. `contact_normal_last_error` has them in words.
    */
   int32_t warnings;
   /*
@@ -2028,7 +2047,7 @@ typedef struct contact_normal_report {
    */
   struct contact_normal_report_accuracy accuracy;
   /*
-   Its cost.
+   The cost of the solve.
    */
   struct contact_normal_report_statistics statistics;
   /*
@@ -2042,7 +2061,7 @@ typedef struct contact_normal_report {
 } contact_normal_report;
 
 /*
- The settings of a solver: see `contact_normal_solver_query`.
+ The settings of a solver handle: see `contact_normal_solver_query`.
  */
 typedef struct contact_normal_solver_info {
   /*
@@ -2050,11 +2069,11 @@ typedef struct contact_normal_solver_info {
    */
   int64_t struct_size;
   /*
-   Elements in x of its grid.
+   Elements in x of the solver's grid.
    */
   int32_t mx;
   /*
-   Elements in y.
+   Elements in y of the solver's grid.
    */
   int32_t my;
   /*
@@ -2066,21 +2085,21 @@ typedef struct contact_normal_solver_info {
    */
   double dy;
   /*
-   Threads that it was set up with; 0: all cores.
+   The threads with which the solver was set up; 0: all cores.
    */
   int32_t threads;
   /*
-   1: it holds a result, for `contact_normal_solver_fields`; 0: it does not.
+   1: the solver has a result, which `contact_normal_solver_fields` copies; 0: the solver has none.
    */
   int32_t has_result;
   /*
-   Bytes that it holds.
+   The bytes of memory that the solver holds.
    */
   int64_t bytes;
 } contact_normal_solver_info;
 
 /*
- Where the results of n entries are written; NULL (the default of each): not wanted.
+ The caller's arrays for the results of n entries. NULL (the default of each): not wanted.
  */
 typedef struct contact_normal_friction_results {
   /*
@@ -2088,15 +2107,15 @@ typedef struct contact_normal_friction_results {
    */
   int64_t struct_size;
   /*
-   The sums of q dx dy in x and y, on body 1, `[n][2]`.
+   The forces on body 1 in x and in y, the sums of q dx dy, `[n][2]`.
    */
   double *force;
   /*
-   The sums of (x qy - y qx) dx dy about the centre of spin, `[n]`.
+   The moments about the centre of spin, the sums of (x qy - y qx) dx dy, `[n]`.
    */
   double *moment;
   /*
-   Creepages in x and y, given or found, `[n][2]`.
+   The creepages in x and in y, prescribed or computed, `[n][2]`.
    */
   double *creepage;
   /*
@@ -2124,11 +2143,11 @@ typedef struct contact_normal_friction_results {
    */
   contact_normal_status *status;
   /*
-   Tractions, `[n][2][my][mx]`: those in x and then those in y of each entry.
+   The tractions, `[n][2][my][mx]`: for each entry those in x, then those in y.
    */
   double *traction;
   /*
-   Slip, `[n][2][my][mx]`.
+   The slip, `[n][2][my][mx]`: for each entry that in x, then that in y.
    */
   double *slip;
   /*
@@ -2146,9 +2165,9 @@ typedef struct contact_normal_friction_results {
 } contact_normal_friction_results;
 
 /*
- Writes the undeformed distance of an mx x my grid of dx x dy elements over the rectangle of the scene into
- `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread,
- in its floating-point environment.
+ A callback that writes the undeformed distance on an mx x my grid of dx x dy elements over the rectangle of the scene. It must write all values of
+ `undeformed_distance`, `[my][mx]`, x fastest. If it returns non-zero, the call is cancelled. It is called on the calling thread, in the
+ floating-point environment of that thread.
  */
 typedef int32_t (*contact_normal_surface_callback)(int32_t mx,
                                                    int32_t my,
@@ -2158,7 +2177,7 @@ typedef int32_t (*contact_normal_surface_callback)(int32_t mx,
                                                    void *user);
 
 /*
- The accuracy that is asked for, its allowed cost, and the grid that it took.
+ The wanted accuracy, the limits on its cost, and (out) the grid that was used.
  */
 typedef struct contact_normal_accuracy {
   /*
@@ -2166,24 +2185,25 @@ typedef struct contact_normal_accuracy {
    */
   int64_t struct_size;
   /*
-   Estimated relative error of the force (of the approach, when the force is prescribed) at most, between 0 and 1; default 1e-3.
+   The largest estimated relative error of the force (or of the approach, if the force is prescribed), between 0 and 1; default 1e-3.
    */
   double target;
   /*
-   Seconds for all grids together; 0 (default): no limit. The first grid is solved whatever this limit and the next two are.
+   The largest number of seconds for all grids together; 0 (default): no limit. The first grid is solved whatever `max_seconds`, `max_bytes` and
+   `max_elements` are.
    */
   double max_seconds;
   /*
-   Bytes that the solvers of two successive grids may hold; 0 (default): no limit.
+   The largest number of bytes that the solvers of two successive grids hold together; 0 (default): no limit.
    */
   int64_t max_bytes;
   /*
-   Elements of a grid; 0 (default): 4096 x 4096.
+   The largest number of elements of a grid; 0 (default): 4096 x 4096.
    */
   int64_t max_elements;
   /*
-   Where the undeformed distance of each grid comes from; NULL (default): that of the scene, refined by cubics between
-   the centres, whose slopes jump beside holes and rough ends only.
+   The callback that writes the undeformed distance on each grid. NULL (default): the undeformed distance of the scene is interpolated by cubics
+   between the centres of elements; their slopes are continuous except beside holes and rough ends.
    */
   contact_normal_surface_callback surface;
   /*
@@ -2191,23 +2211,23 @@ typedef struct contact_normal_accuracy {
    */
   void *user;
   /*
-   Out: elements in x of the grid that was used; 0: cancelled before a grid was solved.
+   Out: elements in x of the grid that was used; 0: the call was cancelled before a grid was solved.
    */
   int32_t mx;
   /*
-   Out: elements in y.
+   Out: elements in y of that grid.
    */
   int32_t my;
   /*
-   Out: element size in x.
+   Out: element size in x of that grid.
    */
   double dx;
   /*
-   Out: element size in y.
+   Out: element size in y of that grid.
    */
   double dy;
   /*
-   Out: estimated relative error on it; < 0: not known.
+   Out: the estimated relative error on that grid; < 0: not known.
    */
   double reached;
   /*
@@ -2215,47 +2235,48 @@ typedef struct contact_normal_accuracy {
    */
   double seconds;
   /*
-   Estimated relative error of the largest pressure at most, below 1; 0 (default): not asked for.
+   The largest estimated relative error of the largest pressure, below 1; 0 (default): no target.
    */
   double max_pressure_target;
   /*
-   Estimated relative error of the corrected contact area at most, below 1; 0 (default): not asked for.
+   The largest estimated relative error of the corrected contact area, below 1; 0 (default): no target.
    */
   double contact_area_target;
   /*
-   The same of the mean gap. This and what follows is estimated from grids with fewer elements, which are solved, too. Since 0.2.
+   As `contact_area_target`, for the mean gap. Errors of the mean gap and of all quantities below are estimated from grids with fewer elements,
+   which are solved as well. Since 0.2.
    */
   double mean_gap_target;
   /*
-   Of the stiffness dF/d approach.
+   The target for the stiffness dF/dapproach.
    */
   double stiffness_target;
   /*
-   Of the length of the tangential force.
+   The target for the magnitude of the tangential force.
    */
   double tangential_force_target;
   /*
-   Of the length of the creepage that is found.
+   The target for the magnitude of the computed creepage.
    */
   double creepage_target;
   /*
-   Of the moment about the spin centre.
+   The target for the moment about the spin centre.
    */
   double spin_moment_target;
   /*
-   Of the area of stick.
+   The target for the stick area.
    */
   double stick_area_target;
   /*
-   Of the largest von Mises stress.
+   The target for the largest von Mises stress.
    */
   double max_von_mises_target;
   /*
-   Of its depth.
+   The target for the depth of the largest von Mises stress.
    */
   double von_mises_depth_target;
   /*
-   Of the largest shear stress.
+   The target for the largest shear stress.
    */
   double max_shear_target;
 } contact_normal_accuracy;
@@ -2277,58 +2298,58 @@ typedef struct contact_normal_price {
    */
   double error;
   /*
-   The tolerance to ask for; a smaller one would be wasted.
+   The tolerance that the accuracy needs. A smaller one would not improve the result.
    */
   double tolerance;
   /*
-   Seconds of set-up and solve with `options->threads`; < 0: not known.
+   The predicted seconds of set-up and solve with `options->threads`; < 0: not known.
    */
   double seconds;
   /*
-   Seconds with one thread; < 0: not known.
+   The predicted seconds with one thread; < 0: not known.
    */
   double seconds_one_thread;
   /*
-   Bytes held by the solver; 0: not known.
+   The predicted bytes of the solver; 0: not known.
    */
   int64_t bytes;
   /*
-   Elements in x of the coarsest grid that does; 0: not known.
+   Elements in x of the coarsest grid that reaches the accuracy; 0: not known.
    */
   int32_t mx;
   /*
-   Elements in y.
+   Elements in y of that grid.
    */
   int32_t my;
   /*
-   Element size in x.
+   Element size in x of that grid.
    */
   double dx;
   /*
-   Element size in y.
+   Element size in y of that grid.
    */
   double dy;
   /*
-   The obstacle to the accuracy.
+   CONTACT_NORMAL_OBSTACLE_...: the obstacle to the accuracy.
    */
   int32_t obstacle;
   /*
-   0.
+   Always 0.
    */
   int32_t reserved;
   /*
-   Of bodies that relax: the relative error that the length of the step leaves on any grid, beside `error`; it falls with the square of the
-   step. 0: none relaxes.
+   For bodies that relax: the relative error because of the time step, which any grid has in addition to `error`. It falls with the square of the
+   time step. 0: no body relaxes.
    */
   double time_error;
   /*
-   Products that the solve takes, in products on its grid, as `work_units` of a report; 0: not known. They depend little on the machine.
+   The work units of the solve, products on its grid, as `work_units` of a report; 0: not known. They depend little on the machine.
    */
   double work_units;
 } contact_normal_price;
 
 /*
- A quantity on one grid.
+ The value of a quantity on one grid, and its error.
  */
 typedef struct contact_normal_quantity_row {
   /*
@@ -2344,33 +2365,33 @@ typedef struct contact_normal_quantity_row {
    */
   int32_t lack;
   /*
-   Elements in x.
+   Elements in x of the grid.
    */
   int32_t mx;
   /*
-   Elements in y.
+   Elements in y of the grid.
    */
   int32_t my;
   /*
-   The value; NaN: there is none.
+   The value of the quantity; NaN: there is no value.
    */
   double value;
   /*
-   Its estimated error, in its own unit; < 0: not known.
+   The estimated error of the value, in the same unit; < 0: not known.
    */
   double error;
   /*
-   Seconds of set-up and solve on this grid, the same for all quantities; stresses and stiffness not included.
+   Seconds of set-up and solve on this grid, without stresses and stiffness; the same for all quantities.
    */
   double seconds;
   /*
-   Products on this grid, in work units: one product of the grid is one.
+   Work units of the solve on this grid. The unit is one product on this grid.
    */
   double work_units;
 } contact_normal_quantity_row;
 
 /*
- The change of a quantity without an effect, or without two, and the cost that this saves.
+ The change of a quantity if one or two effects are left out, and the cost with and without them.
  */
 typedef struct contact_normal_effects_row {
   /*
@@ -2382,7 +2403,7 @@ typedef struct contact_normal_effects_row {
    */
   int32_t omitted;
   /*
-   The second effect that is left out; NONE: only one is.
+   CONTACT_NORMAL_OMIT_...: the second effect that is left out; NONE: there is no second one.
    */
   int32_t also_omitted;
   /*
@@ -2398,41 +2419,42 @@ typedef struct contact_normal_effects_row {
    */
   int32_t lack;
   /*
-   0.
+   Always 0.
    */
   int32_t reserved;
   /*
-   The value of the scene as it is, on the last of the small grids; NaN: there is none.
+   The quantity for the whole scene, on the last of the small grids; NaN: there is no value.
    */
   double value;
   /*
-   The change of the quantity by leaving out, on the last of the small grids; NaN: not known, as where that grid is not solved.
+   The change of the quantity without the effects that are left out, on the last of the small grids; NaN: not known, for instance because that
+   grid was not solved.
    */
   double change;
   /*
-   How far the change may be off; < 0: not known.
+   The estimated error of the change; < 0: not known.
    */
   double change_error;
   /*
-   Predicted seconds of a whole call for the scene on its own grid, with one thread.
+   The predicted seconds of a whole call for the scene on its own grid, with one thread.
    */
   double seconds;
   /*
-   The same without the effects that are left out.
+   The predicted seconds without the effects that are left out.
    */
   double seconds_without;
   /*
-   Predicted bytes of its solver.
+   The predicted bytes of the solver for the scene on its own grid.
    */
   double bytes;
   /*
-   The same without the effects that are left out.
+   The predicted bytes without the effects that are left out.
    */
   double bytes_without;
 } contact_normal_effects_row;
 
 /*
- The exact Hertz solution.
+ Hertz's exact solution for two bodies with an elliptical contact area.
  */
 typedef struct contact_normal_hertz_solution {
   /*
@@ -2444,11 +2466,11 @@ typedef struct contact_normal_hertz_solution {
    */
   double semi_axis_x;
   /*
-   Semi-axis in y.
+   Semi-axis of the contact ellipse in y.
    */
   double semi_axis_y;
   /*
-   Pressure at the centre.
+   Pressure at the centre of the ellipse.
    */
   double max_pressure;
   /*
@@ -2460,13 +2482,13 @@ typedef struct contact_normal_hertz_solution {
    */
   double force;
   /*
-   Area of the ellipse.
+   Area of the contact ellipse.
    */
   double area;
 } contact_normal_hertz_solution;
 
 /*
- The largest value of a field of stresses, and where it is: at the centre of an element, at one of the depths.
+ The largest value of a stress over all depths, and its place: below the centre of an element, at one of the depths.
  */
 typedef struct contact_normal_stress_maximum {
   /*
@@ -2474,31 +2496,31 @@ typedef struct contact_normal_stress_maximum {
    */
   int64_t struct_size;
   /*
-   The value.
+   The largest value of the stress.
    */
   double value;
   /*
-   Its place, from the middle of the grid: (ix + 1/2 - mx/2) dx.
+   The place of the largest value in x, from the middle of the grid: (ix + 1/2 - mx/2) dx.
    */
   double x;
   /*
-   The same in y.
+   The place in y, from the middle of the grid: (iy + 1/2 - my/2) dy.
    */
   double y;
   /*
-   The depth.
+   The depth of the place.
    */
   double z;
   /*
-   The element above it.
+   The element above the place: its number in x, from 0.
    */
   int32_t ix;
   /*
-   The same in y.
+   The element above the place: its number in y, from 0.
    */
   int32_t iy;
   /*
-   Which of the depths, from 0.
+   The number of the depth in `depths`, from 0.
    */
   int32_t depth;
   /*
@@ -2508,7 +2530,7 @@ typedef struct contact_normal_stress_maximum {
 } contact_normal_stress_maximum;
 
 /*
- Where stresses are written; NULL: not wanted, and not computed. Stresses are positive in tension.
+ The caller's arrays for stresses. NULL: not wanted, and not computed. Stresses are positive in tension.
  */
 typedef struct contact_normal_stress_outputs {
   /*
@@ -2516,7 +2538,7 @@ typedef struct contact_normal_stress_outputs {
    */
   int64_t struct_size;
   /*
-   The components xx, yy, zz, xy, xz, yz, `[n][my][mx]` each for n depths; default NULL.
+   The components xx, yy, zz, xy, xz, yz at n depths, `[n][my][mx]` each; default NULL.
    */
   double *stress[6];
   /*
@@ -2532,15 +2554,15 @@ typedef struct contact_normal_stress_outputs {
    */
   double *principal[3];
   /*
-   The unit vectors of their directions, `[n][my][mx][3]` each; default NULL.
+   The unit vectors of the directions of the principal stresses, `[n][my][mx][3]` each; default NULL.
    */
   double *directions[3];
   /*
-   The largest von Mises stress of all depths, or NULL (default).
+   The largest von Mises stress of all depths and its place, or NULL (default).
    */
   struct contact_normal_stress_maximum *largest_von_mises;
   /*
-   The largest shear stress of all depths, or NULL (default).
+   The largest shear stress of all depths and its place, or NULL (default).
    */
   struct contact_normal_stress_maximum *largest_shear;
 } contact_normal_stress_outputs;
@@ -2563,37 +2585,38 @@ typedef struct contact_normal_heat {
    */
   int32_t my;
   /*
-   Length of an element in x. Default 0: to be set.
+   Element size in x. Default 0: to be set.
    */
   double dx;
   /*
-   In y. Default 0: to be set.
+   Element size in y. Default 0: to be set.
    */
   double dy;
   /*
-   The flux, `[my][mx]`, a power per area: of friction |q| times the speed of slip; below 0 it cools. Default NULL: to be set.
+   The heat flux into both bodies, `[my][mx]`, a power per area: with friction |q| times the slip velocity. A negative flux cools. Default NULL:
+   to be set.
    */
   const double *heat_flux;
   /*
-   lambda of body 1 and 2, power per length and temperature. Default 0: to be set.
+   The conductivity lambda of body 1 and of body 2, a power per length and temperature. Default 0: to be set.
    */
   double conductivity[2];
   /*
-   kappa = lambda/(density times heat capacity) of both, area per time. Default 0: to be set.
+   The diffusivity kappa = lambda/(density times heat capacity) of body 1 and of body 2, an area per time. Default 0: to be set.
    */
   double diffusivity[2];
   /*
-   How fast each surface moves past the contact in +x, length per time, of any sign; 0 (default): it stands still. Of bodies that roll towards
-   +x at V both are -V.
+   The velocity with which each surface moves past the contact, positive towards +x, a length per time; 0 (default): the surface is at rest. For
+   bodies that roll towards +x at V both are -V.
    */
   double speed[2];
   /*
-   The part of the heat that goes into body 1, 0 to 1; < 0 (default): that for which the largest temperatures of both are the same (Blok 1937),
-   and one half where no heat makes one of both warmer.
+   The part of the heat that flows into body 1, 0 to 1. < 0 (default): the part with which the largest temperatures of both bodies are equal
+   (Blok 1937), or one half if no part of the heat warms one of both bodies.
    */
   double share;
   /*
-   Threads; 1: one (default), 0: all cores.
+   The number of threads; default 1; 0: all cores.
    */
   int32_t threads;
   /*
@@ -2611,25 +2634,26 @@ typedef struct contact_normal_flash {
    */
   int64_t struct_size;
   /*
-   The part of the heat that goes into body 1.
+   The part of the heat that flows into body 1.
    */
   double share;
   /*
-   The largest rise of body 1 and 2, a temperature.
+   The largest rise of the temperature of body 1 and of body 2.
    */
   double largest[2];
   /*
-   Where that is in x, from the middle of the grid, of body 1 and 2.
+   The place of the largest rise in x, from the middle of the grid, for body 1 and body 2.
    */
   double x[2];
   /*
-   And in y.
+   The place of the largest rise in y, from the middle of the grid, for body 1 and body 2.
    */
   double y[2];
 } contact_normal_flash;
 
 /*
- Tractions and slips of a solve with friction, and how easily the surfaces wear: depth = K/H times the frictional work, or K/H p |s|.
+ The tractions and slips of a solve with friction, and the constants of wear. The depth of wear is K/H times the frictional work per area, or K/H p
+ |s|.
  */
 typedef struct contact_normal_wear {
   /*
@@ -2645,44 +2669,44 @@ typedef struct contact_normal_wear {
    */
   int32_t my;
   /*
-   Length of an element in x. Default 0: to be set.
+   Element size in x. Default 0: to be set.
    */
   double dx;
   /*
-   In y. Default 0: to be set.
+   Element size in y. Default 0: to be set.
    */
   double dy;
   /*
-   Tractions q on body 1, in x and y, `[my][mx]` each, as `fields->traction` has them. Default NULL: to be set.
+   The tractions q on body 1 in x and in y, `[my][mx]` each, as in `fields->traction`. Default NULL: to be set.
    */
   const double *traction[2];
   /*
-   The slip s of a step, in x and y, a length, as `fields->slip` has it. Default NULL: to be set.
+   The slip s of a step in x and in y, a length, `[my][mx]` each, as in `fields->slip`. Default NULL: to be set.
    */
   const double *slip[2];
   /*
-   Pressures, `[my][mx]`: the depth is K/H p |s| (Archard 1953). NULL (default): K/H times the frictional work.
+   The pressures, `[my][mx]`: the depth is K/H p |s| (Archard 1953). NULL (default): the depth is K/H times the frictional work.
    */
   const double *pressure;
   /*
-   K, the wear coefficient, a number. Default 0: nothing wears, and only the work is computed.
+   The wear coefficient K, a number without a unit. Default 0: there is no wear, and only the work is computed.
    */
   double coefficient;
   /*
-   K of each element, `[my][mx]`, in the place of `coefficient`. Default NULL: the same everywhere.
+   The wear coefficient K of each element, `[my][mx]`, in place of `coefficient`. Default NULL: K is uniform.
    */
   const double *coefficients;
   /*
-   H, the hardness, a pressure. Default 1: the coefficient is K/H, a volume per energy.
+   The hardness H, a pressure. Default 1: `coefficient` is K/H, a volume per energy.
    */
   double hardness;
   /*
-   How many steps `work` and `depth` are those of, any number of 0 or more: L/dq for a length L that is rolled by steps of dq; V/dq makes the work a power.
-   Default 1.
+   The number of steps to which `work` and `depth` refer, any number >= 0; default 1. L/dq: a length L that is rolled in steps of dq. V/dq, with
+   the velocity V: work and depth per time.
    */
   double steps;
   /*
-   dq, the length of a step that rolls along x, as `friction->rolling_distance` has it (there 0 is dx); needed for `passage` only. Default 0: not set.
+   The length dq of a step of rolling along x, as `friction->rolling_distance` (whose 0 means dx); needed for `passage` only. Default 0: not set.
    */
   double rolling_distance;
 } contact_normal_wear;
@@ -2700,26 +2724,27 @@ typedef struct contact_normal_worn {
    */
   double work;
   /*
-   The material that wears off, a volume.
+   The volume of the worn material.
    */
   double volume;
   /*
-   The largest depth, a length.
+   The largest depth of wear, a length.
    */
   double largest_depth;
   /*
-   Where that is in x, from the middle of the grid.
+   The place of the largest depth in x, from the middle of the grid.
    */
   double x;
   /*
-   And in y.
+   The place of the largest depth in y, from the middle of the grid.
    */
   double y;
 } contact_normal_worn;
 
 /*
- Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, in its
- floating-point environment, with no lock held. A handle that is solving refuses to be used.
+ A callback that receives log messages: a level, a message (valid during the call) and the user pointer. It is called on the thread that called
+ the library, in the floating-point environment of that thread, with no lock held. The callback must not use a handle that is solving: such calls
+ are refused.
  */
 typedef void (*contact_normal_log_callback)(int32_t level, const char *message, void *user);
 
@@ -2728,30 +2753,31 @@ extern "C" {
 #endif // __cplusplus
 
 /*
- A short text for a status; never NULL, static storage. Since 0.1.
+ Returns a short text for a status: never NULL, in static storage. Since 0.1.
  */
 const char *contact_normal_status_text(contact_normal_status status);
 
 /*
- The message of the last call on this thread that did not return OK, or returned OK with `report->warnings`, or "". It names the argument, its value and the rule.
- Never NULL; valid until the next call of this library on this thread. Since 0.1.
+ Returns the message of the last call on this thread that did not return OK, or that returned OK with `report->warnings`; "" if there was none.
+ The message of a refused argument names the argument, its value and the rule. The pointer is never NULL, and valid until the next call of this
+ library on this thread. Since 0.1.
  */
 const char *contact_normal_last_error(void);
 
 /*
- The version of the library, as "0.2.0"; static storage. Since 0.1.
+ Returns the version of the library, as "0.2.0", in static storage. Since 0.1.
  */
 const char *contact_normal_version(void);
 
 /*
- `CONTACT_NORMAL_ABI_VERSION` of the library: at least that of the header it is used with. Since 0.1.
+ Returns `CONTACT_NORMAL_ABI_VERSION` of the library, which should be at least that of the header. Since 0.1.
  */
 int32_t contact_normal_abi_version(void);
 
 /*
- Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
- and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
- size of their own struct. No more than `size` bytes are written, and what this library does not know of them is 0. `to` NULL is ignored.
+ Fills a struct of a `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
+ and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`. Other programs call this function with
+ the size of their own struct. It writes no more than `size` bytes, and 0 into members that this library does not know. `to` NULL is ignored.
  Since 0.2.
  */
 void contact_normal_init(int32_t kind,
@@ -2759,9 +2785,9 @@ void contact_normal_init(int32_t kind,
                          int64_t size);
 
 /*
- Writes the `compliance` of a coated body under a pressure wave: the amplitude of the displacement over that of the
+ Computes the `compliance` of a coated body under a pressure wave: the amplitude of the displacement divided by the amplitude of the
  pressure. `shear_modulus` (+infinity: rigid) and `poisson_ratio` are those of the body below the coating.
- `wave_number` is 2 pi over the wavelength, > 0. Compare it with a formula of your own; a body of one material has
+ `wave_number` is k = 2 pi over the wavelength, > 0. The function is for comparisons with other formulas; without a coating the compliance is
  `(1 - nu)/(G k)`. Since 0.2.
  */
 contact_normal_status contact_normal_coating_compliance(const struct contact_normal_coating *coating,
@@ -2771,7 +2797,7 @@ contact_normal_status contact_normal_coating_compliance(const struct contact_nor
                                                         double *compliance);
 
 /*
- Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
+ Solves one scene. `options` NULL: the default options; `fields`, `report` NULL: not wanted. Since 0.1.
  */
 contact_normal_status contact_normal_solve(const struct contact_normal_scene *scene,
                                            const struct contact_normal_options *options,
@@ -2779,10 +2805,11 @@ contact_normal_status contact_normal_solve(const struct contact_normal_scene *sc
                                            struct contact_normal_report *report);
 
 /*
- Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until nothing is in contact, and so it does from
- bodies that are pressed together. The result is the state of the least force on these ways (`report->normal.force`). A load to begin with that
- is safe is a force of 0. The first way may take three times `max_cycles`, and each further way `max_cycles`, or four times the
- cycles of the first and 500 if that is more. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
+ Searches the pull-off force of a scene with adhesion. The call decreases the approach until nothing is in contact, on several paths: from the
+ state of the scene's load, and from bodies that are pressed together. The result is the state of the strongest pull on these paths; its force, in
+ `report->normal.force`, is the smallest one, negative. A force of 0 is a load with which the search can always begin. The first path may take
+ three times `max_cycles`. Each further path may take `max_cycles` or, if that is more, 500 plus four times the cycles of the first path. `options`
+ NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
  */
 contact_normal_status contact_normal_pull_off(const struct contact_normal_scene *scene,
                                               const struct contact_normal_options *options,
@@ -2790,22 +2817,22 @@ contact_normal_status contact_normal_pull_off(const struct contact_normal_scene 
                                               struct contact_normal_report *report);
 
 /*
- Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
- precision and threads of `options` (NULL: the defaults). Each solve takes an undeformed distance and a load of its own: they need not be
- set, and what is set must be valid. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
- Since 0.1.
+ Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle, the precision and the
+ threads of `options` (NULL: the defaults). The undeformed distance and the load of `scene` need not be set, because each solve has its own; if
+ they are set, they must be valid. `*solver` is written only if the status is OK. `contact_normal_solver_free` frees the solver. Since 0.1.
  */
 contact_normal_status contact_normal_solver_new(const struct contact_normal_scene *scene,
                                                 const struct contact_normal_options *options,
                                                 struct contact_normal_solver **solver);
 
 /*
- Solves for the undeformed distance, the load and the pressure limit of `scene`. Grid, bodies and their branches, layer, coatings, period
- and patches must be those of the set-up; what differs is refused by name. `scene->influence` and `scene->row_tables` may be NULL: those of the solver. If they
- are not NULL, each solve reads and compares them. Other coefficients need `contact_normal_solver_set_influence`. `fields`, `report`
- NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread, without coefficients to compare,
- and without friction, adhesion, pressure limits, patches and bodies that relax, which take some memory for the call (docs/conventions.md,
- "Many solves"). Since 0.1.
+ Solves for the undeformed distance, the load, the pressure limit, the friction and the adhesion of `scene`. The grid, the bodies and their
+ branches, the layer, the coatings, the period and the patches must be those of the set-up; the message of a refusal names what differs.
+ `scene->influence` and `scene->row_tables` may be NULL: the solver uses the tables of the set-up. If they are not NULL, each solve compares them
+ with these tables; only `contact_normal_solver_set_influence` changes the coefficients. `fields`, `report` NULL: not wanted.
+
+ With one thread, later solves of the same kind as the first one allocate nothing (docs/conventions.md, "Many solves", has the exceptions). Tables
+ that are compared, friction, adhesion, pressure limits, patches and bodies that relax take some memory for the call. Since 0.1.
  */
 contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *solver,
                                                   const struct contact_normal_scene *scene,
@@ -2814,89 +2841,93 @@ contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *
                                                   struct contact_normal_report *report);
 
 /*
- Gives a solver other coefficients, and their scale, for all later solves. `influence`: those of the normal problem; `friction`: its
- `influence` and `influence_cross`, or its `row_tables`; nothing else of it is used. NULL: the old ones stay; one of the two must be given.
- The solver must have been set up with coefficients of the same kinds: `scene->influence`; `friction->influence` or `row_tables`, and
- `influence_cross` or none. Its plans and its memory are kept, and so is its last result, from which PREVIOUS and `continues` may start.
- A call that is refused changes nothing; after OUT_OF_MEMORY set both again. Since 0.1.
+ Gives a solver other influence coefficients, with their scale, for all later solves. `influence` has those of the normal problem. `friction` has
+ the tangential ones: `influence` and `influence_cross`, or `row_tables`; its other members are not used. NULL: the coefficients stay as they are;
+ one of both must be given. The solver must have been set up with coefficients of the same kinds: `scene->influence`; `friction->influence` or
+ `row_tables`; with `influence_cross` or without. The plans, the memory and the last result of the solver are kept, so PREVIOUS and `continues`
+ may start from this result. A call that is refused changes nothing, except after OUT_OF_MEMORY: then set both again. Since 0.1.
  */
 contact_normal_status contact_normal_solver_set_influence(struct contact_normal_solver *solver,
                                                           const struct contact_normal_influence *influence,
                                                           const struct contact_normal_friction *friction);
 
 /*
- Copies the last result of a handle: of `contact_normal_solver_solve`, or the one that `contact_normal_solve_to_accuracy` made it
- with, whose grid has `accuracy->mx` x `accuracy->my` elements. A solve has a result when its status is >= 0; one that was refused
- leaves the result before as it is, or none if it failed on the way. One that was refused for its friction always leaves it. Tractions, slip
- and stick area are those that `contact_normal_solve_tangential` found with this handle since, if it did.
- INVALID_ARGUMENT if there is none. Since 0.1.
+ Copies the last result of a handle to `fields`. It is the result of `contact_normal_solver_solve`, or the one with which
+ `contact_normal_solve_to_accuracy` made the handle; the grid of the latter has `accuracy->mx` x `accuracy->my` elements. A solve has a result if
+ its status is >= 0. If a solve is refused before it begins or because of its friction, the handle keeps the result before; if it fails later,
+ the handle may have no result. If `contact_normal_solve_tangential` was called with this handle since, tractions, slip and stick area are those
+ of that call. INVALID_ARGUMENT: there is no result. Since 0.1.
  */
 contact_normal_status contact_normal_solver_fields(const struct contact_normal_solver *solver,
                                                    struct contact_normal_fields *fields);
 
 /*
- Writes the settings of a solver: its grid, its threads, its bytes, and whether it has a result. Since 0.2.
+ Writes the settings of a solver to `info`: the grid, the threads, the bytes, and whether the solver has a result. Since 0.2.
  */
 contact_normal_status contact_normal_solver_query(const struct contact_normal_solver *solver,
                                                   struct contact_normal_solver_info *info);
 
 /*
- Frees a solver. INVALID_ARGUMENT: a call uses it, and nothing was freed: free it after that call. NULL is ignored. The library keeps
- memory of what is freed for later solvers: see `contact_normal_release`. Since 0.1.
+ Frees a solver. INVALID_ARGUMENT: a call uses the solver, so it is not freed; free it after that call. NULL is ignored. The library keeps some of
+ the freed memory for later solvers: see `contact_normal_release`. Since 0.1.
  */
 contact_normal_status contact_normal_solver_free(struct contact_normal_solver *solver);
 
 /*
- The displacements u = A p of pressures of the caller's, of any sign: `pressure` and `displacement` are `[my][mx]` of the handle's grid, and A
- has all effects of the set-up that it depends on: own coefficients, coatings, periods, patches, the layer. The last result of the handle
- stays. NOT_FINITE: a pressure is not. Since 0.2.
+ Computes the displacements u = A p of given pressures of any sign. `pressure` and `displacement` are `[my][mx]` on the handle's grid. A includes
+ the effects of the set-up that change it: influence coefficients of your own, coatings, periods, patches, the layer. The last result of the
+ handle is kept. NOT_FINITE: a pressure is not finite. Since 0.2.
  */
 contact_normal_status contact_normal_solver_product(struct contact_normal_solver *solver,
                                                     const double *pressure,
                                                     double *displacement);
 
 /*
- Writes the `stiffness` dF/d approach of the last result of a handle: a force per length, by how much the force grows with the approach while
- the contact area, pressures at their limit and tractions stay as they are. `A s = 1` is solved on the contact area, and the stiffness is the sum of
- `s dx dy`; 0 without contact. `residual` (NULL: not wanted) is that of these equations, relative, in the 2-norm over the contact area: the
- relative error of the stiffness is about that. OK: it is at most 1e-6, mostly 1e-10; ITERATION_LIMIT, STAGNATED: both are written, and it is
- larger. INFEASIBLE: full contact with two periods. INVALID_ARGUMENT: the handle has no result. As a function of the approach the
- force has this derivative also where the contact area changes, but for jumps by single elements that enter or leave. The first call sets up memory of about the size
- of the handle. After `contact_normal_solver_set_influence` it is that of the new coefficients. UNSUPPORTED: the last result is one of adhesion,
- whose report has it. Since 0.2.
+ Computes the `stiffness` dF/dapproach of the last result of a handle, a force per length: the growth of the force with the approach while the
+ contact area, pressures at their limit and tractions stay constant. It solves `A s = 1` on the contact area; the stiffness is the sum of
+ `s dx dy`, or 0 without contact. `residual` (NULL: not wanted) receives the relative residual of these equations, in the 2-norm over the contact
+ area. The relative error of the stiffness is about this residual.
+
+ OK: the residual is at most 1e-6, mostly 1e-10. ITERATION_LIMIT, STAGNATED: the residual is larger; both values are written. INFEASIBLE: full
+ contact with two periods. INVALID_ARGUMENT: the handle has no result. UNSUPPORTED: the last result has adhesion; its report has the stiffness.
+
+ The force has this derivative by the approach also where the contact area changes, except for jumps when single elements enter or leave. After
+ `contact_normal_solver_set_influence` the stiffness is that of the new coefficients. The first call sets up memory of about the size of the
+ handle. Since 0.2.
  */
 contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solver *solver,
                                                       double *stiffness,
                                                       double *residual);
 
 /*
- Solves tangential problems of `scene->friction`: one, for programs that have a normal solver of their own, or a table of creep forces.
+ Solves tangential problems with the friction of a scene: one problem, for programs that have another solver for the normal problem, or a table of
+ entries, for tables of creep forces.
 
- `solver` holds coefficients, operators and the last tractions for the next call, for `friction->continues` and for `initial_guess`
- PREVIOUS; `scene` and `options` must be those of its set-up. NULL: each call sets up its own.
+ `solver`: a handle that keeps the coefficients and operators, and the last tractions for `friction->continues` and `initial_guess` PREVIOUS of
+ the next call. `scene` and `options` must be those of its set-up. NULL: each call sets up operators of its own.
 
- `pressure` `[my][mx]`: an element without a positive pressure is exterior. The undeformed distance and the load are not read and may be left
- unset. Tractions do not change the pressures, also of unlike bodies. NULL, without a solver: the normal problem of the scene is solved
- first, once.
+ `pressure` `[my][mx]`: the given pressures; an element without a positive pressure is exterior. The undeformed distance and the load of the scene
+ are not read and may be left unset. Tractions do not change the given pressures, also for unlike bodies. NULL, without a solver: the call first
+ solves the normal problem of the scene, once.
 
- `entries` `[n][3]`: for each entry the prescribed values in x and in y (creepages, or forces where `scene->friction->prescribed` says so) and the
- spin. NULL, with n = 1: those of `scene->friction`. With given pressures this is one problem: all threads work on it, `progress` is
- called for each iteration, and a refused call leaves `results` unchanged.
+ `entries` `[n][3]`: for each entry the prescribed values in x and in y (creepages, or forces, by `scene->friction->prescribed`) and the spin.
+ NULL, with n = 1: the values of `scene->friction`. If the pressures are given and `entries` is NULL, the call solves one problem: all threads
+ work on it, `progress` is called for each iteration, and a refused call leaves `results` unchanged.
 
- `report` (NULL: not wanted) has the measures of the pressures and, for one problem, those of friction. Its `warnings` has LAW if the
+ `report` (NULL: not wanted) gets the measures of the pressures and, for one problem, those of friction. Its `warnings` has LAW if the
  problem or one of the entries has this warning.
 
- `options->threads` entries are solved at a time. Neighbours in the table should be neighbours in the motion: a run of 16 entries is solved
- one after the other, each from the tractions of the one before if it differs little. All meet the tolerance. Results have the same bits
- for any number of threads. `continues` is refused. The last result of the solver stays unchanged.
+ Of a table, `options->threads` entries are solved at a time. Neighbouring entries should have similar motions: 16 entries in a row are solved one
+ after the other, and each starts from the tractions of the entry before if the motions differ little. All entries meet the tolerance, and results
+ have the same bits for any number of threads. `continues` is refused. The last result of the solver stays unchanged.
 
- The other entries are solved if one is refused: its results stay unchanged, and `results->status` holds its status. The call returns OK if
- the normal problem and all entries are OK. Otherwise it returns the status of the first entry that was refused (< 0), or if there is
- none, that of the normal problem or of the first entry that stopped early (> 0). `contact_normal_last_error` then has a line
- "entry 3: ..." for each such entry, counted from 0: 1000 lines at most.
+ If an entry is refused, the others are still solved. The results of the refused entry stay unchanged, and `results->status` has its status. The
+ call returns OK if the normal problem and all entries are OK. Otherwise it returns the status of the first refused entry (< 0) or, if there is
+ none, that of the first entry that stopped early (> 0) or, if there is none either, that of the normal problem. `contact_normal_last_error` then
+ has a line "entry 3: ..." for each entry that is not OK, counted from 0: 1000 lines at most.
 
- `progress` is called on the calling thread: after the cycles of the normal problem, and then about once for each entry; `cycles` is the
- number of solved entries and `residual` that of the last one. When it cancels, the results of unsolved entries stay unchanged, with
+ `progress` is called on the calling thread: after the cycles of the normal problem, and then about once for each entry. `cycles` is then the
+ number of solved entries, and `residual` that of the last one. If `progress` cancels, the results of unsolved entries stay unchanged, and have
  the status CANCELLED, or ITERATION_LIMIT after `max_seconds`. Since 0.2.
  */
 contact_normal_status contact_normal_solve_tangential(struct contact_normal_solver *solver,
@@ -2909,20 +2940,20 @@ contact_normal_status contact_normal_solve_tangential(struct contact_normal_solv
                                                       struct contact_normal_report *report);
 
 /*
- Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
- solver was set up with threads (0: all cores), each on one thread. `scenes`, `fields` and `reports` are arrays of `count`
- structs, each filled by its `_init`; `statuses` is an array of `count` values. `fields`, `reports` and `statuses` may be NULL:
- not wanted. A problem is refused if it reads or writes memory that another one writes.
+ Solves `count` problems for the grid and the bodies of the solver, with the same options. The solver's threads (0: all cores) solve different
+ problems at a time, one problem per thread. `scenes`, `fields` and `reports` are arrays of `count` structs, each filled by its `_init`;
+ `statuses` is an array of `count` values. `fields`, `reports` and `statuses` may be NULL: not wanted. The call is refused if one problem
+ reads or writes memory that another one writes.
 
- A problem that is refused does not keep the others from being solved: its outputs stay as they are and `statuses` holds its
- status. The call returns OK if all problems have that status, or else the status of the first one that was refused (< 0), or
- else of the first one that stopped early (> 0). `contact_normal_last_error` then has a line "problem 3: ..." for each of them,
- counted from 0 and in this order: 1000 lines at most. Where the arguments of the call itself are refused, `statuses` stays as it is too.
+ If a problem is refused, the others are still solved. The outputs of the refused problem are not written, and `statuses` has its status. The
+ call returns OK if all problems have this status. Otherwise it returns the status of the first refused problem (< 0) or, if there is none, of the
+ first problem that stopped early (> 0). `contact_normal_last_error` then has a line "problem 3: ..." for each problem that is not OK: first the
+ refused ones, then the others, counted from 0, and at most 1000 lines. If the arguments of the call itself are refused, `statuses` is not written.
 
  Results have the same bits as those of `contact_normal_solver_solve` for one problem after the other with one thread.
- `initial_guess` may be NONE or GIVEN, not PREVIOUS, and a problem whose friction `continues` is refused. The last result of the solver itself stays, for later solves.
- `progress` must be NULL (UNSUPPORTED): no callback is called from another thread; for the same reason there are no log
- messages. The first batch sets up one solver per thread, which are kept. Since 0.1.
+ `initial_guess` may be NONE or GIVEN, not PREVIOUS, and a problem whose friction `continues` is refused. The last result of the solver itself is
+ kept for later solves. `progress` must be NULL (else UNSUPPORTED), because no callback is called from another thread. For the same reason there
+ are no log messages. The first batch sets up one solver per thread, which the handle keeps. Since 0.1.
  */
 contact_normal_status contact_normal_solver_solve_batch(struct contact_normal_solver *solver,
                                                         int32_t count,
@@ -2933,22 +2964,23 @@ contact_normal_status contact_normal_solver_solve_batch(struct contact_normal_so
                                                         contact_normal_status *statuses);
 
 /*
- Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->accuracy.error_force` is at most
- `accuracy->target` times the force (or the approach, when the force is prescribed), and the errors of the other quantities are at most
- their targets. Both directions must have enough elements across the contact: 6 for forces, 12 for the largest pressure, 32 for areas, and
- 10 for the others. With `accuracy->surface` the scene's undeformed distance is not read and may be NULL. The tolerance is that of
- `options` or, where that is less, a tenth of the targets, and a hundredth of those of single pressures and stresses. For a quantity
- other than force, largest pressure and area up to two grids with fewer elements are solved first. Arrays of one value per element
- (compliances, limits, coefficients of friction, weights, tractions before) have their means on other grids.
+ Solves on the grid of `scene`, then on finer grids over the same rectangle, until the targets are met: `report->accuracy.error_force` is at most
+ `accuracy->target` times the force (or the approach, if the force is prescribed), and the errors of the other quantities are at most
+ their targets. Besides, the contact must have enough elements across in both directions: 6 for forces, 12 for the largest pressure, 32 for areas,
+ and 10 for the others.
 
- OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements forbids the next grid. CANCELLED: by the surface or the
- progress callback. STAGNATED: a target is below round-off, or no estimate can be trusted (a largest pressure that is singular has
- none). In these three cases `contact_normal_last_error` has the best error reached, and report and handle have its result. UNSUPPORTED:
- own coefficients, FIXED contact, and stresses of coated bodies.
+ With `accuracy->surface` the scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, if that is less, a
+ tenth of the targets, and a hundredth of the targets for the largest pressure and for stresses. For a quantity other than force, largest pressure
+ and area, up to two grids with fewer elements are solved first. Arrays of one value per element (compliances, limits, coefficients of friction,
+ weights, previous tractions) are averaged over the elements of other grids.
 
- `*solver` (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
- `contact_normal_solver_free`; NULL if cancelled before a grid was solved. `contact_normal_cost_of_accuracy` predicts the cost.
- Since 0.1.
+ OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements forbids the next grid. CANCELLED: the surface or the
+ progress callback cancelled the call. STAGNATED: a target is below round-off, or no estimate can be trusted (a singular largest pressure has
+ none). After these three statuses `contact_normal_last_error` has the best error reached, and report and handle have the result with this error.
+ UNSUPPORTED: influence coefficients of your own, FIXED contact, and stresses of coated bodies.
+
+ `*solver` (`solver` NULL: not wanted) is a handle with the result, which `contact_normal_solver_fields` copies and `contact_normal_solver_free`
+ frees; it is NULL if the call was cancelled before a grid was solved. `contact_normal_cost_of_accuracy` predicts the cost. Since 0.1.
  */
 contact_normal_status contact_normal_solve_to_accuracy(const struct contact_normal_scene *scene,
                                                        const struct contact_normal_options *options,
@@ -2957,16 +2989,20 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
                                                        struct contact_normal_report *report);
 
 /*
- Predicts the cost of each of `n` relative errors of a `quantity`: `rows[i]` is that of `targets[i]`, and `contact_normal_price_init(rows)` has
- set the size of a row. The scene is solved on small grids over its rectangle only, for at most 2 % of the seconds of the most expensive row
- that can be reached (the least that its samples predict; on a busy machine the last sample may take longer), or 50 ms; for some 2 s where no
- row is known by then. Where nothing touches on the scene's grid, a quantity of 0 is exact: the row has that grid and the error 0. Of
- `accuracy` (NULL: the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit names it as
- its obstacle, and has the cost without the limit. With a surface the scene's undeformed distance is not read and may be NULL. Without one
- small grids sample it, and grids finer than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the
- surface or `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached, and rows have the results so far; or `max_cycles`, and
- neither the scene's grid nor a coarser one was solved. STAGNATED: neither was solved. UNSUPPORTED: own coefficients, FIXED contact, or a step
- of bodies that relax which continues. Since 0.2.
+ Predicts the cost of each of `n` relative errors of a `quantity`: `rows[i]` belongs to `targets[i]`. `contact_normal_price_init(rows)` must have
+ set the size of a row. The call solves the scene only on small grids over its rectangle. It takes at most 2 % of the seconds of the most expensive
+ row that can be reached (the least that its samples predict; on a busy machine the last sample may take longer) or 50 ms, or some 2 s if no row
+ is known by then. If nothing touches on the scene's grid, a quantity of 0 is exact: the row has that grid and the error 0.
+
+ Of `accuracy` (NULL: the defaults) the call reads `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user`. A row that exceeds a limit has
+ this limit as its obstacle, and the cost without the limit. With a surface callback the scene's undeformed distance is not read and may be NULL.
+ Without one, small grids sample the undeformed distance, and grids finer than the scene's are refined from it, as in
+ `contact_normal_solve_to_accuracy`.
+
+ CANCELLED: the surface callback or `options->stop` cancelled the call. ITERATION_LIMIT: `options->max_seconds` was reached, and rows have the
+ results so far; or because of `max_cycles` neither the scene's grid nor a coarser one was solved. STAGNATED: neither the scene's grid nor a
+ coarser one was solved. UNSUPPORTED: influence coefficients of your own, FIXED contact, or a step of bodies that relax with `continues`.
+ Since 0.2.
  */
 contact_normal_status contact_normal_cost_of_accuracy(const struct contact_normal_scene *scene,
                                                       const struct contact_normal_options *options,
@@ -2977,13 +3013,15 @@ contact_normal_status contact_normal_cost_of_accuracy(const struct contact_norma
                                                       struct contact_normal_price *rows);
 
 /*
- Solves the scene on its grid and on `coarser` grids (0 to 12), each with half the elements of the next in both directions and solved from
- nothing, and writes `n` rows for each grid, coarsest first: `rows[k n + i]` is that of `quantities[i]` (CONTACT_NORMAL_QUANTITY_...) on grid
- k. There are `(coarser + 1) n` rows; where a grid of few elements cannot be halved any more, fewer grids, and `*written` (NULL: not wanted)
- has the number of rows. Errors of force, largest pressure and area are the estimates of the report; errors of all others follow from the grids
- before, so that the coarsest has none. Where nothing touches on the scene's own grid, values of 0 have the error 0. Arrays of one value per
- element have their means on coarser grids. ITERATION_LIMIT, STAGNATED: the scene's own grid was not solved. UNSUPPORTED: own coefficients,
- tractions kept by a handle, FIXED contact. Since 0.2.
+ Solves the scene on its own grid and on `coarser` coarser grids (0 to 12). Each grid has half the elements of the next one in both directions, and
+ each solve has no initial guess. The call writes `n` rows for each grid, coarsest first: `rows[k n + i]` has `quantities[i]`
+ (CONTACT_NORMAL_QUANTITY_...) on grid k. There are `(coarser + 1) n` rows, or fewer if a grid of few elements cannot be halved any more.
+ `*written` (NULL: not wanted) is the number of rows.
+
+ Errors of force, largest pressure and area are the estimates of the report. Errors of all other quantities follow from the coarser grids, so the
+ coarsest grid has none. If nothing touches on the scene's own grid, values of 0 have the error 0. Arrays of one value per element are averaged on
+ coarser grids. ITERATION_LIMIT, STAGNATED: the scene's own grid was not solved. UNSUPPORTED: influence coefficients of your own, tractions kept by
+ a handle, FIXED contact. Since 0.2.
  */
 contact_normal_status contact_normal_quantities(const struct contact_normal_scene *scene,
                                                 const struct contact_normal_options *options,
@@ -2994,16 +3032,20 @@ contact_normal_status contact_normal_quantities(const struct contact_normal_scen
                                                 int32_t *written);
 
 /*
- Computes the bill of the effects that the scene names, and of the refinements that it has without naming them (the coupling of unlike
- bodies, the spin, a coating instead of a thin layer). For each of them, and each of the `n` `quantities` (CONTACT_NORMAL_QUANTITY_...),
- a row has the change of the quantity without the effect, the error of this change, and the cost on the scene's own grid. The verdict is by
- the relative accuracy `target`, between 0 and 1. `pairs` 1: pairs are left out, too; 0: they are not. The scene is solved on small grids,
- for at most 5 % of its own predicted seconds or 100 ms, or `options->max_seconds` where that is given.
+ Computes the bill: how much a result changes if an effect of the scene is left out, and what the effect costs. Besides the effects of the scene
+ the bill has refinements that a scene has without a struct of their own: the coupling of unlike bodies, the spin, a coating in place of a thin
+ layer.
 
- `*count` is the number of rows: n for each effect, in the order of the constants, then n for each pair. `rows` has room for the first
- `capacity` of them; rows NULL asks for the count alone, which takes no time. ITERATION_LIMIT: `max_cycles` ended a solve of the last grid, and
- rows that need it have no change (LACK_UNSOLVED); or `max_seconds` was reached. Then, and after CANCELLED, rows have the results of the last
- grid that was solved with and without all effects. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
+ For each of these, and each of the `n` `quantities` (CONTACT_NORMAL_QUANTITY_...), a row has the change of the quantity, the error of this change,
+ and the cost on the scene's own grid. The verdict compares the change with the relative accuracy `target`, between 0 and 1. `pairs` 1: pairs of
+ effects are left out as well; 0: they are not. The scene is solved on small grids, for at most 5 % of its own predicted seconds or 100 ms, or for
+ `options->max_seconds` if that is given.
+
+ `*count` is the number of rows: n for each effect, in the order of the constants, then n for each pair. `rows` has room for the first `capacity`
+ rows. With `rows` NULL the call only writes the count, which takes no time. ITERATION_LIMIT: `max_cycles` ended a solve of the last grid, and rows
+ that need this solve have no change (LACK_UNSOLVED); or `max_seconds` was reached. After `max_seconds` and CANCELLED rows have the results of the
+ last grid that was solved with and without all effects. UNSUPPORTED: influence coefficients of your own, tractions kept by a handle, FIXED
+ contact. Since 0.2.
  */
 contact_normal_status contact_normal_effects_bill(const struct contact_normal_scene *scene,
                                                   const struct contact_normal_options *options,
@@ -3016,8 +3058,9 @@ contact_normal_status contact_normal_effects_bill(const struct contact_normal_sc
                                                   int32_t *count);
 
 /*
- Exact contact of two bodies with `h = curvature_x x^2 + curvature_y y^2` (1/length, positive), for `load`
- PRESCRIBED_APPROACH or PRESCRIBED_FORCE with the value `amount`. `shear_modulus` and `poisson_ratio`: two values. Since 0.1.
+ Computes Hertz's exact solution for two bodies with the undeformed distance `h = curvature_x x^2 + curvature_y y^2`; the curvatures are positive,
+ 1/length. `load` is PRESCRIBED_APPROACH or PRESCRIBED_FORCE, and `amount` the value of the approach or force. `shear_modulus` and `poisson_ratio`
+ have two values each. Since 0.1.
  */
 contact_normal_status contact_normal_hertz(double curvature_x,
                                            double curvature_y,
@@ -3028,9 +3071,9 @@ contact_normal_status contact_normal_hertz(double curvature_x,
                                            struct contact_normal_hertz_solution *solution);
 
 /*
- The influence coefficients of the half-space for elements `dx` by `dy`, as a table over offsets -cx..cx-1 by -cy..cy-1:
- `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. NOT_FINITE, INVALID_ARGUMENT: coefficients beyond the range of
- doubles. Since 0.1.
+ Computes the influence coefficients of the half-space for elements `dx` by `dy`, as a table over the offsets -cx to cx - 1 and -cy to cy - 1:
+ `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. NOT_FINITE, INVALID_ARGUMENT: the coefficients are beyond the range
+ of doubles. Since 0.1.
  */
 contact_normal_status contact_normal_influence_half_space(int32_t cx,
                                                           int32_t cy,
@@ -3041,11 +3084,12 @@ contact_normal_status contact_normal_influence_half_space(int32_t cx,
                                                           double *coefficients);
 
 /*
- The influence coefficients of bodies that relax and roll steadily, without a change in time, as a table over offsets -cx..cx-1 by -cy..cy-1:
- `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. `shear_modulus` and `poisson_ratio`: two values each, the moduli those at
- once; of `visco` the branches, moduli and times are read. `speed`: how fast the bodies roll towards +x; < 0: towards -x. The table is not even in x, so
- it serves the normal problem. UNSUPPORTED: a body of whose modulus nothing is left in the end. NOT_FINITE, INVALID_ARGUMENT: coefficients
- beyond the range of doubles. Since 0.2.
+ Computes the influence coefficients of pressures for viscoelastic bodies in steady rolling, as a table over the offsets -cx to cx - 1 and -cy to
+ cy - 1: `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. `shear_modulus` (the instantaneous moduli) and
+ `poisson_ratio` have two values each; of `visco` the branches, the moduli and the times are read. `speed` is the speed of rolling, positive
+ towards +x and negative towards -x. The table is not even in x. It is for the normal problem;
+ `contact_normal_influence_rolling_tangential` has the tables for friction. UNSUPPORTED: the modulus of a body relaxes to 0. NOT_FINITE,
+ INVALID_ARGUMENT: the coefficients are beyond the range of doubles. Since 0.2.
  */
 contact_normal_status contact_normal_influence_rolling(int32_t cx,
                                                        int32_t cy,
@@ -3058,10 +3102,10 @@ contact_normal_status contact_normal_influence_rolling(int32_t cx,
                                                        double *coefficients);
 
 /*
- The tangential influence coefficients of bodies that relax and roll steadily, as tables that `friction->influence` takes in steady rolling: `xx`, `yy` and
- `xy`, one after the other, each over the offsets of `contact_normal_influence_rolling`: `coefficients[3][2 cy][2 cx]`. The other arguments are those of that
- function. UNSUPPORTED: unlike bodies, at once or as they relax, and a body of whose modulus nothing is left in the end. NOT_FINITE, INVALID_ARGUMENT:
- coefficients beyond the range of doubles. Since 0.2.
+ Computes the tangential influence coefficients of viscoelastic bodies in steady rolling, as tables that `friction->influence` takes in steady
+ rolling: xx, yy and xy, one after the other, each over the offsets of `contact_normal_influence_rolling`: `coefficients[3][2 cy][2 cx]`. The
+ other arguments are those of that function. UNSUPPORTED: the bodies are unlike, at once or as they relax, or the modulus of a body relaxes to 0.
+ NOT_FINITE, INVALID_ARGUMENT: the coefficients are beyond the range of doubles. Since 0.2.
  */
 contact_normal_status contact_normal_influence_rolling_tangential(int32_t cx,
                                                                   int32_t cy,
@@ -3074,13 +3118,17 @@ contact_normal_status contact_normal_influence_rolling_tangential(int32_t cx,
                                                                   double *coefficients);
 
 /*
- Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and tractions
- `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on this body, in +x
- and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
- and `patches` matter: below an element of a patch the loads on another one count times the factor between both, and below one of no patch
- all loads in full. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options (NULL:
- the defaults) `threads`, `progress`, `max_seconds`, `stop` and `dump` matter; a cycle is a depth. CANCELLED, or ITERATION_LIMIT by `max_seconds`: the
- depths done so far are written, others are left alone. Loads must lie below 1e304. Without a depth the largest stresses are left alone. Since 0.2.
+ Computes the stresses in body 1 or 2 (`body`) of a scene, a half-space, at n depths below the centres of the elements. The loads are pressures and
+ tractions, `[my][mx]` each and constant on each element; NULL: none, but one array must be given. They must be below 1e304. Tractions are those on
+ this body, positive towards +x and +y. Depths are >= 0, positive into the body, in any order.
+
+ Of the scene the call uses the grid, the Poisson ratio of the body, a `period` in both directions, and `patches`. Below an element of a patch the
+ loads on another patch count times the factor between both patches; below an element of no patch all loads count in full. UNSUPPORTED: a `coating`
+ on this body, `influence`, `row_tables`, or a period in one direction only.
+
+ Of the options (NULL: the defaults) the call uses `threads`, `progress` (with depths in place of cycles), `max_seconds`, `stop` and `dump`.
+ CANCELLED, or ITERATION_LIMIT after `max_seconds`: the depths so far are written, the outputs of the others stay unchanged. With n = 0 the largest
+ stresses are not written. Since 0.2.
  */
 contact_normal_status contact_normal_subsurface_stress(const struct contact_normal_scene *scene,
                                                        int32_t body,
@@ -3093,12 +3141,12 @@ contact_normal_status contact_normal_subsurface_stress(const struct contact_norm
                                                        struct contact_normal_stress_outputs *outputs);
 
 /*
- Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the middle of the grid, so that
- element (ix, iy) has its centre at ((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz,
- yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused: stresses jump there or are infinite. With
- `patches` a point must lie below the grid; it takes the factors of the patch of the element above, on an edge that of the larger index.
- Time grows with n times the number of loaded elements. CANCELLED, or ITERATION_LIMIT by `max_seconds`: stresses of points that were not
- reached are 0. With `period`: UNSUPPORTED. Since 0.2.
+ Computes the stresses of `contact_normal_subsurface_stress` at n `points` `[n][3]`. A point has the coordinates x and y from the middle of the
+ grid, where element (ix, iy) has its centre at ((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy,
+ zz, xy, xz, yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused, because stresses jump there or are
+ infinite. With `patches` a point must lie below the grid, and has the factors of the patch of the element above (on an edge, of the element with
+ the larger index). The time grows with n times the number of loaded elements. CANCELLED, or ITERATION_LIMIT after `max_seconds`: the stresses of
+ points that were not reached are 0. UNSUPPORTED: a `period`. Since 0.2.
  */
 contact_normal_status contact_normal_stress_at_points(const struct contact_normal_scene *scene,
                                                       int32_t body,
@@ -3111,22 +3159,24 @@ contact_normal_status contact_normal_stress_at_points(const struct contact_norma
                                                       double *stress);
 
 /*
- The steady flash temperature of both surfaces, above the temperature far away: each body is a half-space past which the sources of heat move
- (Jaeger 1942). Without motion it is that of a source at rest. `temperature`: `[2][my][mx]`, of body 1, then of body 2; NULL: not wanted.
- `flash` NULL: not wanted. The grid must hold all of the flux; downstream of it a rise beyond the grid is not computed. Products are FFTs; the
- set-up takes some hundred function values an element and body. INVALID_ARGUMENT, NOT_FINITE: numbers out of their range; NOT_FINITE: temperatures
- beyond the range of numbers. Since 0.2.
+ Computes the steady flash temperature of both surfaces: the rise above the temperature far away. Each body is a half-space past which the sources
+ of heat move (Jaeger 1942); without motion the sources are at rest. `temperature` `[2][my][mx]` gets the rise of body 1, then that of body 2;
+ NULL: not wanted. `flash` NULL: not wanted. The grid must contain the whole flux; the rise downstream of the grid is not computed. The set-up
+ takes some hundred function values for each element and body; the products are made by FFT. INVALID_ARGUMENT, NOT_FINITE: numbers are out of their
+ range. NOT_FINITE: the temperatures are beyond the range of doubles. Since 0.2.
  */
 contact_normal_status contact_normal_flash_temperature(const struct contact_normal_heat *heat,
                                                        double *temperature,
                                                        struct contact_normal_flash *flash);
 
 /*
- Frictional work and wear of each element, from what a solve with friction returned: a host takes `depth` off its surface, or adds it to the
- undeformed distance. `work`, `depth`: `[my][mx]`, an energy per area and a length, of `steps` steps. `passage`: `[my]`, the depth that a point of
- a surface which rolls along x loses while it passes through the contact once. `worn`: the sums. NULL: not wanted. The work of an element is
- -(q . s), so that their sum is what the motion puts in less what is stored; where elements stick it is 0 to the tolerance, of either sign.
- INVALID_ARGUMENT, NOT_FINITE: numbers out of their range, results out of the range of doubles. Since 0.2.
+ Computes the frictional work and the wear of each element from the result of a solve with friction. The calling program may remove `depth` from
+ its surface, or add it to the undeformed distance.
+
+ `work` and `depth` `[my][mx]`: the work, an energy per area, and the depth of wear, a length, of `steps` steps. `passage` `[my]`: the depth that a
+ point of a surface which rolls along x loses while it passes through the contact once. `worn`: the sums. NULL: not wanted. The work of an element
+ is -(q . s); the sum is the work of the motion minus the change of the stored energy. The work of an element that sticks is 0 to the tolerance, of
+ either sign. INVALID_ARGUMENT, NOT_FINITE: numbers are out of their range, or results beyond the range of doubles. Since 0.2.
  */
 contact_normal_status contact_normal_frictional_wear(const struct contact_normal_wear *wear,
                                                      double *work,
@@ -3135,61 +3185,64 @@ contact_normal_status contact_normal_frictional_wear(const struct contact_normal
                                                      struct contact_normal_worn *worn);
 
 /*
- Sends log messages up to `level` (CONTACT_NORMAL_LOG_...) to `callback`; NULL: none, as at the start. For the whole process.
- UNSUPPORTED when a Rust host has set a logger of its own: it gets them. Since 0.1.
+ Sends the log messages of the whole process up to `level` (CONTACT_NORMAL_LOG_...) to `callback`. NULL, as at the start of the process: no
+ messages. UNSUPPORTED: a program in Rust has set a logger already, which receives the messages. Since 0.1.
  */
 contact_normal_status contact_normal_set_log(contact_normal_log_callback callback,
                                              int32_t level,
                                              void *user);
 
 /*
- Returns to the system all that the library keeps for later calls: the memory of solves that are over, and the threads that no solver holds.
- The threads end soon after the call returns. Later calls make them anew. Since 0.2.
+ Returns to the system what the library keeps for later calls: the memory of finished solves, and the worker threads. The threads end soon
+ after this call or, if a solver still uses them, when the last such solver is freed. Later calls start new threads. Since 0.2.
  */
 contact_normal_status contact_normal_release(void);
 
 /*
- How many bytes of solves that are over are kept at most, in the process; 0: none. At the start 128 MiB, which is
- enough for solves on 1024 x 1024 elements: larger ones that each set up anew are 20 to 30 % faster with more, up to 512 MiB for 2048 x 2048.
- Solver handles hold their own. More is given back at once. Since 0.2.
+ Sets the largest number of bytes that the process keeps of finished solves; 0: none. The default, 128 MiB, is enough for solves on 1024 x 1024
+ elements. Larger solves without a handle are 20 to 30 % faster with more: up to 512 MiB for 2048 x 2048 elements. The memory that solver
+ handles hold does not count. Kept memory above the new limit is given back at once. Since 0.2.
  */
 contact_normal_status contact_normal_keep(int64_t bytes);
 
 /*
- Writes how many `bytes` and how many `threads` are kept now (NULL: not wanted). Since 0.2.
+ Writes how many `bytes` and how many `threads` the library keeps now for later calls. NULL: not wanted. Since 0.2.
  */
-contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
+contact_normal_status contact_normal_kept(int64_t *bytes,
+                                          int32_t *threads);
 
 /*
- 1 if this library has the feature of this name, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop",
- "error_ratio", "neglect_below"), a member of the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables",
- "law", "branch", "previous_coefficient", "yield_limit"), or a task of calls ("batch", "accuracy", "price_list", "quantities", "effects_bill",
+ Returns 1 if this library has the feature `name`, else 0, also for names of later versions. A feature is an effect of a scene ("friction",
+ "adhesion", ...), an option ("max_seconds", "stop", "cycle", "error_ratio", "neglect_below"), a field ("stick_slip"), a member of
+ `contact_normal_friction` ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "branch",
+ "previous_coefficient", "yield_limit"), or a task of functions ("batch", "accuracy", "price_list", "quantities", "effects_bill",
  "stress", "coating_compliance", "flash_temperature", "frictional_wear", "influence_rolling", "influence_rolling_tangential",
  "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump", "set_option", "constant", "product", "stiffness").
- Names of later versions are unknown here: 0. Since 0.2.
+ Since 0.2.
  */
 int32_t contact_normal_has(const char *name);
 
 /*
- Sets the option of this `name` to the `value` of a text: "tolerance" to "1e-8", "method" to "PROJECTED_CG" (or "METHOD_PROJECTED_CG", or
- "4"). Upper and lower case are the same, blanks around do not matter, and numbers may be written as in Fortran, "1d-8". For hosts that
- read options from a file. INVALID_ARGUMENT: there is no such option, or the text is no value of it; the message has similar names, or all.
- The call that uses a number checks its range. Callbacks, `cycle`, `stop` and `dump` are set by the program. Since 0.2.
+ Sets the option `name` to the `value` that a text has: "tolerance" to "1e-8", "method" to "PROJECTED_CG" (or "METHOD_PROJECTED_CG", or
+ "4"). This is for programs that read options from a file. Upper and lower case are the same, blanks around a text do not matter, and numbers may
+ be written as in Fortran, "1d-8". INVALID_ARGUMENT: there is no such option, or the text is not a value of the option. The message lists similar
+ names, or all names. The range of a number is checked by the call that uses the options. A text cannot set callbacks, `cycle`, `stop` and `dump`.
+ Since 0.2.
  */
 contact_normal_status contact_normal_set_option(struct contact_normal_options *options,
                                                 const char *name,
                                                 const char *value);
 
 /*
- The same of a cycle: "smoother" to "RED_BLACK", "relaxation" to "0.9". Since 0.2.
+ As `contact_normal_set_option`, for a member of a cycle: "smoother" to "RED_BLACK", "relaxation" to "0.9". Since 0.2.
  */
 contact_normal_status contact_normal_set_cycle_option(struct contact_normal_cycle *cycle,
                                                       const char *name,
                                                       const char *value);
 
 /*
- Writes the value of the constant that is called `name`, with or without CONTACT_NORMAL_, in upper or lower case: of "METHOD_NORM" 1.
- INVALID_ARGUMENT: there is none; the message says which are called nearly so. Since 0.2.
+ Writes the value of the constant `name`, which may be written without CONTACT_NORMAL_, and in upper or lower case: 1 for "METHOD_NORM".
+ INVALID_ARGUMENT: there is no such constant; the message lists similar names. Since 0.2.
  */
 contact_normal_status contact_normal_constant(const char *name,
                                               int32_t *value);
