@@ -13,7 +13,7 @@ pub enum Error {
     /// A valid request that this version of the library does not support.
     #[error("{0}")]
     Unsupported(String),
-    /// No pressures or tractions carry the prescribed force.
+    /// No pressures or tractions satisfy the conditions: they cannot carry the prescribed force, or, with two periods, not take the prescribed approach.
     #[error("{0}")]
     Infeasible(String),
     /// The influence coefficients are not those of a positive definite operator.

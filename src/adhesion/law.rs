@@ -22,7 +22,7 @@ pub enum Law {
     /// `exp(-t)`.
     #[default]
     Exponential,
-    /// Constant up to the range and 0 beyond. The number is eta: the edge is smeared linearly from 1 - eta to 1 + eta.
+    /// Constant up to t = 1 - eta, then linear down to 0 at t = 1 + eta. The number is eta.
     Dugdale(f64),
     /// A parabola in t that ends at three ranges.
     Cubic,

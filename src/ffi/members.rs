@@ -3,7 +3,7 @@
 use super::member::{constants, structs, Member, Struct};
 use super::*;
 
-/// Each with its name without CONTACT_NORMAL_.
+/// The constants of the header. Each comes with its name without `CONTACT_NORMAL_`.
 #[rustfmt::skip]
 pub(super) const CONSTANTS: &[(&str, i32)] = constants! {
     CONTACT_NORMAL_OK CONTACT_NORMAL_ITERATION_LIMIT CONTACT_NORMAL_CANCELLED CONTACT_NORMAL_STAGNATED CONTACT_NORMAL_NULL_POINTER
@@ -46,7 +46,7 @@ pub(super) const CONSTANTS: &[(&str, i32)] = constants! {
     CONTACT_NORMAL_VERDICT_NEEDED CONTACT_NORMAL_LOG_OFF CONTACT_NORMAL_LOG_WARNING CONTACT_NORMAL_LOG_INFO
 };
 
-/// Those that a dump may hold.
+/// The structs that a dump may hold.
 #[rustfmt::skip]
 const STRUCTS: &[Struct] = structs! {
     contact_normal_coating {

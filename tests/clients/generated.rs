@@ -253,13 +253,13 @@ fn rust_members(described: &Description) -> String {
 use super::member::{constants, structs, Member, Struct};
 use super::*;
 
-/// Each with its name without CONTACT_NORMAL_.
+/// The constants of the header. Each comes with its name without `CONTACT_NORMAL_`.
 #[rustfmt::skip]
 pub(super) const CONSTANTS: &[(&str, i32)] = constants! {
 "
     .to_owned();
     fill(&mut text, "    ", described.constants.iter().map(|each| format!("CONTACT_NORMAL_{}", each.name)));
-    text += "};\n\n/// Those that a dump may hold.\n#[rustfmt::skip]\nconst STRUCTS: &[Struct] = structs! {\n";
+    text += "};\n\n/// The structs that a dump may hold.\n#[rustfmt::skip]\nconst STRUCTS: &[Struct] = structs! {\n";
     add_structs(&mut text, dumped(described).into_iter(), |each| members(described, each));
     text + "\
 };
