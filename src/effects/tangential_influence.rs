@@ -142,10 +142,12 @@ impl TangentialInfluence<'_> {
         for (kx, ky) in (0..=last_y).flat_map(|ky| (-last_x..=last_x).map(move |kx| (kx, ky))) {
             let (one, opposite) = (self.at(kx, ky), self.at(-kx, -ky));
             if let Some(k) = (0..3).find(|&k| 0.5 * (one[k] + opposite[k]).abs() > most[k]) {
-                let (name, value, own) = (SYMMETRIES[k].name, Number(one[k]), Number(most[k] / LARGEST_RATIO));
+                let ((kx, ky), value) =
+                    if one[k].abs() >= opposite[k].abs() { ((kx, ky), one[k]) } else { ((-kx, -ky), opposite[k]) };
+                let (name, value, own) = (SYMMETRIES[k].name, Number(value), Number(most[k] / LARGEST_RATIO));
                 return Err(Error::NotPositiveDefinite(format!(
-                    "{name} at offset ({kx}, {ky}) is {value}, and at (0, 0) it may be {own} at most: no elastic body moves another element more \
-                     than the one that is pulled. Offset (0, 0) is value [cy][cx] of the table"
+                    "{name} at offset ({kx}, {ky}) is {value}; the coefficients at (0, 0) allow {own}: no elastic body moves another element more than \
+                     the one that is pulled. Offset (0, 0) is value [cy][cx] of the table"
                 )));
             }
         }

@@ -7,7 +7,7 @@ use super::iterate::iterate;
 use super::nested::FullMultigrid;
 use super::options::Options;
 use super::stages::{share, Stage};
-use super::take_over::{must_reach_limits, put_at_limits};
+use super::take_over::{has_lost_limits, put_at_limits};
 use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State, Survey, UNDECIDED_SHARE};
 use crate::error::{Error, Result};
 use crate::methods::direct::Direct;
@@ -167,8 +167,12 @@ impl Methods {
             log::info!("no further progress on this scene: {stage:?} takes over");
             self.best.restore(task)?;
             let worthless = !(task.survey().violation(task.set) <= LARGEST_USEFUL);
-            let has_lost_limits = must_reach_limits(task.problem, task.state, task.set) && !task.state.has_limited();
-            if worthless && !S::FIXED && stage == Stage::Norm || has_lost_limits {
+            if has_lost_limits(task.problem, task.state, task.set) {
+                put_at_limits(task.problem, task.state, task.set)?;
+                task.count_products();
+            } else if worthless && stage == Stage::Norm && S::LIMITED {
+                start_norm_at_limits(task);
+            } else if worthless && stage == Stage::Norm && !S::FIXED {
                 self.start(stage, task, Start::Nothing, 0.0)?;
             }
         }
@@ -184,11 +188,6 @@ impl Methods {
         from: Start,
         error_ratio: f64,
     ) -> Result<Beginning> {
-        if must_reach_limits(task.problem, task.state, task.set) {
-            put_at_limits(task.problem, task.state, task.set)?;
-            task.count_products();
-            return Ok(if is_solved(task, task.survey()) { Beginning::Solved } else { Beginning::GoOn });
-        }
         let (self_influence, threads) = (task.problem.self_influence(), &task.problem.threads);
         match stage {
             Stage::Direct | Stage::ProjectedCg if !S::FIXED => {
@@ -205,16 +204,16 @@ impl Methods {
                         }
                     }
                     Some(_) => {}
-                    None => self.projected_cg.start(task)?,
+                    None => {
+                        self.projected_cg.start(task)?;
+                        if has_lost_limits(task.problem, task.state, task.set) {
+                            put_at_limits(task.problem, task.state, task.set)?;
+                            task.count_products();
+                        }
+                    }
                 }
             }
-            // With a prescribed force and limits, NORM from p = 0 does not find the elements that end at their limit.
-            Stage::Norm if S::LIMITED && !S::FIXED && matches!(task.state.load, Load::Force(_)) => {
-                task.state.unload();
-                if task.state.start_on_bearing_area(task.set, (self_influence, f64::INFINITY), threads).is_none() {
-                    task.state.start(self_influence);
-                }
-            }
+            Stage::Norm if S::LIMITED && !S::FIXED && !task.problem.symmetric => start_norm_at_limits(task),
             Stage::FullMultigrid if !S::FIXED => {
                 task.state.unload();
                 let multigrid = set_up_multigrid(&mut self.multigrid, task.problem, self.shape)?;
@@ -269,6 +268,16 @@ fn is_solved<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, survey: Survey) -> bo
         task.monitor.survey = Some(survey);
     }
     holds
+}
+
+/// The start of NORM with limits. With a prescribed force it is the bearing area, because NORM from p = 0 does not find the elements that end at their limit.
+fn start_norm_at_limits<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) {
+    let (self_influence, threads) = (task.problem.self_influence(), &task.problem.threads);
+    task.state.unload();
+    let (by_force, any_share) = (matches!(task.state.load, Load::Force(_)), (self_influence, f64::INFINITY));
+    if !by_force || task.state.start_on_bearing_area(task.set, any_share, threads).is_none() {
+        task.state.start(self_influence);
+    }
 }
 
 /// Whether `p'Ap < 0`, by a fresh product. If an iteration diverges because A is indefinite, such a direction dominates p.

@@ -198,12 +198,16 @@ pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, 
     Ok(true)
 }
 
-/// Whether the approach is the mean of h or more, with two periods. A uniform pressure displaces nothing then. So the mean of e is not positive with any p, and
-/// elements reach their limits.
-pub fn must_reach_limits<S: AdmissibleSet>(problem: &Problem, state: &State, set: S) -> bool {
+/// Whether no element is at its limit, with two periods and an approach above the mean of h by more than round-off. A uniform pressure displaces nothing then.
+/// So the mean of e is negative with any p, and elements are at their limits in every solution.
+pub fn has_lost_limits<S: AdmissibleSet>(problem: &Problem, state: &State, set: S) -> bool {
     let Load::Approach(approach) = state.load else { return false };
     let are_finite = || (0..state.p.len()).all(|i| set.limit(i) < f64::INFINITY || state.h[i].is_infinite());
-    S::LIMITED && problem.coefficients.is_mean_free() && approach >= mean(&state.h) && are_finite()
+    let is_above = || {
+        let largest = state.h.iter().fold(0.0, |largest: f64, h| largest.max(h.abs()));
+        approach - mean(&state.h) > ROUND_OFF * largest
+    };
+    S::LIMITED && !state.has_limited() && problem.coefficients.is_mean_free() && is_above() && are_finite()
 }
 
 /// Puts all elements with a surface at their limit, with u = A p by a product.

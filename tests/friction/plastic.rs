@@ -213,3 +213,32 @@ fn a_layer_softens_where_friction_falls_below_its_limit() {
         assert!((before - 0.07).abs() <= 1e-6, "{branch:?}: {before}");
     }
 }
+
+/// A layer that softens by almost nothing is the ideal layer: where friction falls below its limit, the limit of a particle stays.
+#[test]
+fn a_layer_that_softens_by_nothing_keeps_its_limit_below_friction_that_falls() {
+    let grid = Grid::new(1, 1, 0.25, 0.25).unwrap();
+    let law = FrictionLaw { time_step: 0.25e-3, ..FrictionLaw::new(Fall::Exponential, (0.5, 0.5), 10.0, 1000.0) };
+    let steps = |hardening: f64| {
+        let layer = PlasticLayer { yield_limit: 70.0, hardening };
+        let mut solver = solver(&grid);
+        // A large shift, below which friction falls to 52.5, and a small one.
+        [(0.05, Previous::None), (0.0015, Previous::Kept)].map(|(shift, previous)| {
+            let friction = Friction {
+                prescribed: along(-shift),
+                law: Some(law),
+                layer: Some(layer),
+                previous,
+                ..Friction::new(0.3)
+            };
+            let (_, solution) = run(&mut solver, &[350.0], &friction, 1e-9);
+            [solution.traction[0][0].abs(), solution.particles[0].yield_limit]
+        })
+    };
+    let ideal = steps(0.0);
+    assert!(ideal[0][0] < 60.0 && ideal[0][1] == 70.0 && ideal[1][0] > 60.0, "{ideal:?}");
+    for (softened, ideal) in steps(-1e-6).as_flattened().iter().zip(ideal.as_flattened()) {
+        // 1e-6 times slips below .1, and two solves to 1e-9.
+        assert!((softened - ideal).abs() <= 1e-6, "{softened} {ideal}");
+    }
+}

@@ -137,3 +137,20 @@ fn high_limits_are_reached_slightly_beyond_the_mean() {
     // Twice the most of these scenes.
     assert!(most <= 300.0, "{most}");
 }
+
+/// At the mean itself full contact solves with any uniform pressure added. The solution is that of approaches slightly below, by all methods.
+#[test]
+fn at_the_mean_no_limit_is_reached() {
+    let wave = |k: usize| 1.0 - (2.0 * std::f64::consts::PI * (k % 16) as f64 / 16.0).cos();
+    let h: Vec<f64> = (0..256).map(wave).collect();
+    for method in [Method::Auto, Method::Norm] {
+        let grid = Grid::new(16, 16, 1.0, 1.0).unwrap();
+        let period = Some(Period { x: true, y: true });
+        let pressure_limit = Some(PressureLimit(Each::Uniform(1e4)));
+        let load = Load::Approach(1.0);
+        let scene = Scene { period, pressure_limit, ..Scene::new(grid, &h, Bodies::same(1.0, 0.0), load) };
+        let (solver, stop, _) = solve(&scene, &Options { method, ..Options::default() }).unwrap();
+        assert_eq!(stop, Outcome::Converged);
+        assert!(!solver.state().at_limit.contains(&true), "{method:?}");
+    }
+}

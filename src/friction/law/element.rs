@@ -123,7 +123,9 @@ impl Law {
             value => (value, [layer.hardening, 0.0, 1.0]),
         };
         if hardened >= cap {
-            return by_friction(cap, of_cap);
+            // A layer that hardens does so up to friction. One that softens has softened by its slip before friction fell below it.
+            let hardens = layer.hardening >= 0.0;
+            return if hardens { by_friction(cap, of_cap) } else { by_friction(hardened, of_hardened) };
         }
         Response {
             bound: hardened,

@@ -11,6 +11,11 @@ const STRAIGHT_OFF: f64 = 0.4;
 /// Error of the area for each element along straight ends of the surface, in elements.
 const EDGE_OFF: f64 = 0.5;
 
+/// An excess of a coefficient below this part is not counted: the periodic images of a half-space, and round-off.
+const NEGLIGIBLE: f64 = 0.02;
+/// The least number of elements of a period. In shorter ones the images change the coefficients of neighbours.
+const LEAST_PERIOD: usize = 16;
+
 /// The error of the contact area along straight pieces of its outline and along ends of the surface, in elements.
 pub fn outline_off(problem: &Problem, outline: &Outline) -> f64 {
     let stepped_edges = (outline.edges - outline.straight_edges) as f64;
@@ -36,21 +41,29 @@ pub fn correction_off(problem: &Problem, state: &State) -> f64 {
 /// E* is infinite if the coefficients do not fall with the distance. Differences of coefficients do not contain a constant part.
 fn beyond_half_space(problem: &Problem) -> (f64, f64) {
     let Grid { mx, my, dx, dy, .. } = problem.grid;
-    if mx.max(my) <= 2 {
-        return (0.0, problem.modulus());
+    let (kernel, plain) = (problem.coefficients.kernel(), (0.0, problem.modulus()));
+    let is_periodic = kernel.repeats(&problem.grid);
+    let (serves_x, serves_y) =
+        (mx >= if is_periodic.0 { LEAST_PERIOD } else { 3 }, my >= if is_periodic.1 { LEAST_PERIOD } else { 3 });
+    if !serves_x && !serves_y {
+        return plain;
     }
+    let along_x = serves_x && (!serves_y || dx < dy || dx == dy && mx >= my);
     let differences = |kernel: &dyn Kernel| {
-        let [itself, next, second] = [0, 1, 2].map(|k| if mx >= my { kernel.at(k, 0) } else { kernel.at(0, k) });
+        let [itself, next, second] = [0, 1, 2].map(|k| if along_x { kernel.at(k, 0) } else { kernel.at(0, k) });
         [itself - next, next - second]
     };
     let unit = HalfSpace::new(dx, dy, 1.0);
-    let [first, second] = differences(problem.coefficients.kernel());
+    let [first, second] = differences(kernel);
     let [unit_first, unit_second] = differences(&unit);
     let compliance = second / unit_second;
-    if compliance > 0.0 {
-        ((first - compliance * unit_first).max(0.0), problem.grid.modulus(compliance * unit.at(0, 0)))
-    } else {
+    let excess = first - compliance * unit_first;
+    if !(compliance > 0.0) {
         (0.0, f64::INFINITY)
+    } else if excess > NEGLIGIBLE * first {
+        (excess, problem.grid.modulus(compliance * unit.at(0, 0)))
+    } else {
+        plain
     }
 }
 
