@@ -97,7 +97,7 @@ impl<T: Real> Product<T> {
         match &self.columns {
             Columns::Toeplitz(columns) => {
                 let y = &columns.columns;
-                self.rows.room_with(columns.lanes_if_even(), y.length(), y.scratch_length())
+                self.rows.room_with(columns.lanes_of_even_symbol(), y.length(), y.scratch_length())
             }
             Columns::PerRow(matrices) => matrices.room(&self.rows),
         }
@@ -121,7 +121,7 @@ impl<T: Real> Product<T> {
     /// Computes the symbol of any coefficients, times a factor.
     pub fn set_uneven(&mut self, by: (&impl Coefficients, f64), set_up: &mut SetUp) -> Result<()> {
         let (grid, px) = (self.grid(), self.rows.transform.length());
-        toeplitz(&mut self.columns).set_uneven(by, grid, px, &self.rows.threads, set_up)
+        toeplitz(&mut self.columns).set_general(by, grid, px, &self.rows.threads, set_up)
     }
 
     /// Takes a known even symbol `value(x, y)` at the bins `0 ..= px/2`, `0 ..= py/2`, without the normalisation `1/(px py)`.
