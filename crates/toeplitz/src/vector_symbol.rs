@@ -105,7 +105,7 @@ impl<T: Real> VectorSymbol<T> {
         match (self.is_even, self.factors_of(block)) {
             (true, None) => T::by_matrix(*arch, Multiply { plan, blocks, factor: &RealMatrix(planes), memory }),
             (true, Some(factors)) => {
-                let factor = &Displaced { of: RealMatrix(planes), factors };
+                let factor = &Displaced { symbol: RealMatrix(planes), factors };
                 T::by_matrix_displaced(*arch, Multiply { plan, blocks, factor, memory });
             }
             (false, _) => {
@@ -126,7 +126,7 @@ impl<T: Real> VectorSymbol<T> {
         match (self.is_even, self.factors_of(block)) {
             (true, None) => T::by_even(*arch, Multiply { plan, blocks, factor: &EvenSymbol(plane), memory }),
             (true, Some(factors)) => {
-                let factor = &Displaced { of: EvenSymbol(plane), factors };
+                let factor = &Displaced { symbol: EvenSymbol(plane), factors };
                 T::by_even_displaced(*arch, Multiply { plan, blocks, factor, memory });
             }
             (false, _) => T::by_complex(*arch, Multiply { plan, blocks, factor: &ComplexSymbol(plane), memory }),
