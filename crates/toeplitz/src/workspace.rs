@@ -21,7 +21,7 @@ pub struct Room {
     pub columns: usize,
     /// The number of complex values of scratch that each thread has.
     pub scratch: usize,
-    /// The number of threads, each of which has one [`Piece`].
+    /// The number of threads, each of which has its own buffers.
     pub pieces: usize,
 }
 
