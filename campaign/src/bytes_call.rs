@@ -10,7 +10,7 @@ use crate::bytes_reader::{Bytes, Target, ROOM, SENTINEL, SENTINEL_CONTACT};
 use crate::call::Outputs;
 use crate::case::{Case, How};
 use crate::effect_structs::{effect_structs, EffectStructs};
-use crate::effects::{Effects, OwnCoefficients, Patches, Values};
+use crate::effects::{Effects, Patches, UserCoefficients, Values};
 use crate::friction_place::{Place, Stop};
 use crate::grid::{Grid, Load};
 use crate::init::initialised;
@@ -182,7 +182,7 @@ impl Call {
         }
         if self.influence.cx > 0 {
             let (cx, cy) = (self.influence.cx as usize, self.influence.cy as usize);
-            self.effects.influence = Some(OwnCoefficients { cx, cy, values: self.table.clone() });
+            self.effects.influence = Some(UserCoefficients { cx, cy, values: self.table.clone() });
             scene.influence = &raw const self.influence;
         }
     }
@@ -197,7 +197,7 @@ impl Call {
             let at = bytes.word() as usize % values.len();
             values[at] = bytes.number();
         }
-        self.effects.row_tables = Some(OwnCoefficients { cx, cy: my, values });
+        self.effects.row_tables = Some(UserCoefficients { cx, cy: my, values });
     }
 
     /// All outputs of a call, as bits.

@@ -7,7 +7,7 @@ use contact_normal::ffi::*;
 
 use crate::case::{Case, How};
 use crate::effect_structs::{effect_structs, EffectStructs};
-use crate::effects::OwnCoefficients;
+use crate::effects::UserCoefficients;
 use crate::grid::{Grid, Load};
 use crate::init::initialised;
 
@@ -199,7 +199,7 @@ impl Handle {
     }
 
     /// Sets other coefficients; returns the status.
-    pub fn set_influence(&mut self, own: &OwnCoefficients) -> i32 {
+    pub fn set_influence(&mut self, own: &UserCoefficients) -> i32 {
         let mut influence = initialised(contact_normal_influence_init);
         (influence.cx, influence.cy, influence.coefficients) = (own.cx as i32, own.cy as i32, own.values.as_ptr());
         // SAFETY: a struct with a table of the size that it says.

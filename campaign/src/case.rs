@@ -62,8 +62,8 @@ impl Case {
         let random = &mut random;
         let unit = if random.chance(0.3) { 10f64.powi(random.integer(0, 12) as i32 - 6) } else { 1.0 };
         let modulus = if random.chance(0.3) { 10f64.powi(random.integer(0, 20) as i32 - 8) } else { 1.0 };
-        let kinds = effects::kinds(random);
-        let grid = elements(random, kinds.period.is_some(), kinds.row_tables, unit);
+        let choice = effects::choose(random);
+        let grid = elements(random, choice.period.is_some(), choice.row_tables, unit);
         let shear_modulus =
             [modulus, if random.chance(0.3) { f64::INFINITY } else { modulus * random.decades(0.1, 10.0) }];
         let poisson_ratio = [random.between(-0.9, 0.5), 0.3];
@@ -72,7 +72,7 @@ impl Case {
         let offset = if random.chance(0.04) { 1e9 * unit } else { 0.0 };
         h.iter_mut().for_each(|h| *h = *h * height + offset);
         let c = compliance(shear_modulus, poisson_ratio);
-        let mut effects = effects::make(random, &kinds, &grid, c);
+        let mut effects = effects::make(random, &choice, &grid, c);
         // By other random numbers, so that the other effects do not change.
         let own = &mut Random::new(seed ^ 0xc0a7);
         // The oracle by quadrature needs elements that are not slender.
@@ -81,10 +81,10 @@ impl Case {
         }
         let scales = Scales::of(&h, &effects, &grid, c);
         let load = load(random, &scales, &grid);
-        if kinds.limit {
+        if choice.limit {
             effects.limit = Some(scales::limit(random, &scales, load, &h, &grid));
         }
-        let how = How::any(random, &scales, &h, load, kinds.limit);
+        let how = How::any(random, &scales, &h, load, choice.limit);
         let through_handle = random.chance(0.2);
         Case {
             seed,

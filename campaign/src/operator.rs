@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use crate::effects::{Effects, OwnCoefficients, Values};
+use crate::effects::{Effects, UserCoefficients, Values};
 use crate::fft::Convolution;
 use crate::grid::Grid;
 use crate::half_space::{free, periodic, Quadrant};
@@ -10,8 +10,8 @@ use crate::half_space::{free, periodic, Quadrant};
 /// The source of the coefficients.
 enum Coefficients<'a> {
     HalfSpace(Quadrant),
-    Table(&'a OwnCoefficients),
-    RowTables(&'a OwnCoefficients),
+    Table(&'a UserCoefficients),
+    RowTables(&'a UserCoefficients),
 }
 
 /// The operator A.
@@ -174,6 +174,7 @@ impl<'a> Operator<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::Definiteness;
     use crate::random::Random;
 
     const GRID: Grid = Grid { mx: 5, my: 4, dx: 0.5, dy: 0.7 };
@@ -190,10 +191,10 @@ mod tests {
         let (cx, cy) = (mx as i64 + 1, my as i64);
         let offsets = (-cy..cy).flat_map(|ky| (-cx..cx).map(move |kx| (kx, ky)));
         let values = offsets.map(|(kx, ky)| quadrant.at(kx, ky)).collect();
-        let table = OwnCoefficients { cx: mx + 1, cy: my, values };
+        let table = UserCoefficients { cx: mx + 1, cy: my, values };
         let pairs = (0..my * my).flat_map(|k| (-cx..cx).map(move |kx| (kx, (k % my).abs_diff(k / my) as i64)));
         let values = pairs.map(|(kx, ky)| quadrant.at(kx, ky)).collect();
-        let row_tables = OwnCoefficients { cx: mx + 1, cy: my, values };
+        let row_tables = UserCoefficients { cx: mx + 1, cy: my, values };
         for effects in [
             Effects { influence: Some(table), ..Effects::default() },
             Effects { row_tables: Some(row_tables), ..Effects::default() },
@@ -210,7 +211,7 @@ mod tests {
         let mut random = Random::new(3);
         let grid = Grid { mx: 30, my: 17, dx: 0.5, dy: 0.7 };
         let p: Vec<f64> = (0..grid.len()).map(|_| random.uniform()).collect();
-        let table = crate::effects::table(&mut random, &grid, 1.0, (true, false));
+        let table = crate::effects::table(&mut random, &grid, 1.0, Definiteness::Unsymmetric);
         let patches = crate::effects::patches(&mut random, &grid);
         for effects in [
             Effects::default(),

@@ -11,7 +11,7 @@
 
 use contact_normal::ffi::*;
 
-use crate::effects::OwnCoefficients;
+use crate::effects::UserCoefficients;
 use crate::grid::Grid;
 use crate::half_space::free;
 use crate::init::initialised;
@@ -111,7 +111,7 @@ impl OwnTractions {
     }
 
     /// The coefficients of pressures that belong to tables per loaded row, or None: those of the bodies.
-    pub fn of_pressures(&self, grid: &Grid, c: f64) -> Option<OwnCoefficients> {
+    pub fn of_pressures(&self, grid: &Grid, c: f64) -> Option<UserCoefficients> {
         let Kind::Rows { d } = &self.kind else { return None };
         let (cx, cy) = (grid.mx, grid.my);
         let half_space = free(cx + 1, cy, grid.dx, grid.dy, c);
@@ -119,7 +119,7 @@ impl OwnTractions {
             let (kx, iy, jy) = (k % (2 * cx), k / (2 * cx) % cy, k / (2 * cx) / cy);
             d[iy] * d[jy] * half_space.at(kx as i64 - cx as i64, iy as i64 - jy as i64)
         };
-        Some(OwnCoefficients { cx, cy, values: (0..cy * cy * 2 * cx).map(value).collect() })
+        Some(UserCoefficients { cx, cy, values: (0..cy * cy * 2 * cx).map(value).collect() })
     }
 }
 

@@ -9,7 +9,7 @@ use contact_normal::ffi::*;
 use crate::call::{self, Outputs};
 use crate::case::{self, Case};
 use crate::coating::{Coating, Layer};
-use crate::effects::{self, Effects};
+use crate::effects::{self, Definiteness, Effects};
 use crate::grid::Load;
 use crate::half_space::compliance;
 use crate::init::initialised;
@@ -155,7 +155,7 @@ pub struct Run {
 fn suited(mut case: Case) -> Case {
     let effects = &mut case.effects;
     (effects.layer, effects.influence, effects.row_tables, effects.coating) = (None, None, None, None);
-    (effects.indefinite, effects.unsymmetric) = (false, false);
+    effects.definiteness = Definiteness::PositiveDefinite;
     let how = &mut case.how;
     (how.cancel_at, how.fixed, how.given) = (None, None, None);
     (how.criterion, how.max_cycles) = (CONTACT_NORMAL_CRITERION_RESIDUAL, 1000);
@@ -179,8 +179,8 @@ fn take_coefficients(case: &mut Case, random: &mut Random) -> Option<([f64; 2], 
             case.shear_modulus = [f64::INFINITY; 2];
             case.effects.coating = Some(Coating { layers, shear_modulus: case.shear_modulus, poisson_ratio: [nu; 2] });
         }
-        1 => case.effects.influence = Some(effects::table(random, &grid, c, (false, false))),
-        _ => case.effects.row_tables = Some(effects::row_tables(random, &grid, c, (false, false))),
+        1 => case.effects.influence = Some(effects::table(random, &grid, c, Definiteness::PositiveDefinite)),
+        _ => case.effects.row_tables = Some(effects::row_tables(random, &grid, c, Definiteness::PositiveDefinite)),
     }
     case.load = case::load(random, &Scales::of(&case.h, &case.effects, &grid, c), &grid);
     Some((modulus, [nu; 2]))

@@ -6,7 +6,7 @@ use contact_normal::ffi::*;
 use crate::call;
 use crate::case::{Case, How};
 use crate::coating::{Coating, Layer};
-use crate::effects::{Effects, OwnCoefficients, Patches, Values};
+use crate::effects::{Definiteness, Effects, Patches, UserCoefficients, Values};
 use crate::grid::{Grid, Load};
 use crate::run::Run;
 use crate::verdict::Verdict;
@@ -105,13 +105,15 @@ impl Reader<'_> {
                 Some(self.own("row_tables", own.coefficients, own.scale, (cx, rows, rows * rows * cx * 2))?);
         }
         if let Some(values) = self.0.doubles("handle.influence") {
-            effects.influence = Some(OwnCoefficients { cx: grid.mx, cy: grid.my, values });
+            effects.influence = Some(UserCoefficients { cx: grid.mx, cy: grid.my, values });
         }
         if let Some(values) = self.0.doubles("handle.row_tables") {
-            effects.row_tables = Some(OwnCoefficients { cx: grid.mx, cy: grid.my, values });
+            effects.row_tables = Some(UserCoefficients { cx: grid.mx, cy: grid.my, values });
         }
-        // The oracle does not decide whether they are those of an elastic body.
-        effects.unsymmetric = effects.influence.is_some() || effects.row_tables.is_some();
+        // The campaign does not decide whether the coefficients of a dump are those of an elastic body. So failures of the solver are excused.
+        if effects.influence.is_some() || effects.row_tables.is_some() {
+            effects.definiteness = Definiteness::Unsymmetric;
+        }
         effects.coating = coating(scene);
         Ok(effects)
     }
@@ -122,9 +124,9 @@ impl Reader<'_> {
         at: *const f64,
         scale: f64,
         (cx, cy, count): (usize, usize, usize),
-    ) -> Result<OwnCoefficients, String> {
+    ) -> Result<UserCoefficients, String> {
         let values = self.doubles(name, at, Some(count))?;
-        Ok(OwnCoefficients { cx, cy, values: values.iter().map(|value| scale * value).collect() })
+        Ok(UserCoefficients { cx, cy, values: values.iter().map(|value| scale * value).collect() })
     }
 
     fn how(&self, grid: &Grid) -> Result<How, String> {

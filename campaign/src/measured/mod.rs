@@ -9,7 +9,7 @@ pub use loads::any as load;
 
 use crate::case::{Case, How};
 use crate::coating;
-use crate::effects::{self, Effects, Kinds};
+use crate::effects::{self, Choice, Effects};
 use crate::grid::Grid;
 use crate::half_space::compliance;
 use crate::random::Random;
@@ -29,7 +29,7 @@ pub fn case(seed: u64) -> Case {
     let mut random = Random::new(seed ^ 0x0006_3ea5_04ed);
     let random = &mut random;
     let grid = grids::any(random);
-    let kinds = kinds(random, &grid);
+    let choice = choose(random, &grid);
     let modulus = if random.chance(0.2) { 10f64.powi(random.integer(0, 16) as i32 - 6) } else { 1.0 };
     let second = if random.chance(0.5) { f64::INFINITY } else { modulus * random.decades(0.1, 10.0) };
     let (shear_modulus, poisson_ratio) = ([modulus, second], [random.between(0.0, 0.5), 0.3]);
@@ -38,16 +38,16 @@ pub fn case(seed: u64) -> Case {
     h.iter_mut().for_each(|h| *h *= height);
     name += datum(&mut Random::new(seed ^ 0x00da_7a5e), height, &mut h);
     let c = compliance(shear_modulus, poisson_ratio);
-    let mut effects = effects::make(random, &kinds, &grid, c);
+    let mut effects = effects::make(random, &choice, &grid, c);
     if is_coated(random, &grid, &effects) {
         effects.coating = Some(coating::random(random, &grid, (shear_modulus, poisson_ratio), effects.period));
     }
     let load = load(random, &grid, &h, c, effects.period);
-    if kinds.limit {
+    if choice.limit {
         let scales = Scales::of(&h, &effects, &grid, c);
         effects.limit = Some(scales::limit(random, &scales, load, &h, &grid));
     }
-    let how = how(random, &Scales::of(&h, &effects, &grid, c), &h, load, (kinds.limit, &grid));
+    let how = how(random, &Scales::of(&h, &effects, &grid, c), &h, load, (choice.limit, &grid));
     let through_handle = grid.len() < 5000 && random.chance(0.15);
     Case {
         seed,
@@ -80,22 +80,22 @@ fn datum(random: &mut Random, height: f64, h: &mut [f64]) -> &'static str {
     }
 }
 
-/// The effects of a scene. Row tables take long: small grids only.
-fn kinds(random: &mut Random, grid: &Grid) -> Kinds {
-    let mut kinds = Kinds::default();
+/// Chooses the effects of a scene. Row tables are chosen on small grids only, because their products take long.
+fn choose(random: &mut Random, grid: &Grid) -> Choice {
+    let mut choice = Choice::default();
     // Sums over the images of slender elements take long.
     let slender = grid.dx.max(grid.dy) > 8.0 * grid.dx.min(grid.dy);
     if !slender && random.chance(0.45) {
-        kinds.period = Some(random.pick(&[(true, false), (false, true), (true, true), (true, true)]));
+        choice.period = Some(random.pick(&[(true, false), (false, true), (true, true), (true, true)]));
     }
-    kinds.layer = random.chance(0.12);
-    kinds.limit = random.chance(0.2);
-    if kinds.period.is_none() {
-        kinds.patches = random.chance(0.06);
-        kinds.influence = random.chance(0.06);
-        kinds.row_tables = !kinds.influence && grid.my <= 40 && grid.len() <= 2000 && random.chance(0.06);
+    choice.layer = random.chance(0.12);
+    choice.limit = random.chance(0.2);
+    if choice.period.is_none() {
+        choice.patches = random.chance(0.06);
+        choice.influence = random.chance(0.06);
+        choice.row_tables = !choice.influence && grid.my <= 40 && grid.len() <= 2000 && random.chance(0.06);
     }
-    kinds
+    choice
 }
 
 /// Whether bodies are coated: only on small grids without slender elements, because the oracle integrates by quadrature.
