@@ -148,7 +148,7 @@ fn certify(case: &Case, load: Load, found: &Found) -> Verdict {
     let operator = Operator::new(&case.grid, c, &case.effects);
     let u = operator.displace(&found.p);
     let (approach, range) = (found.report.normal.approach, found.report.adhesion.range);
-    let own = operator.diagonal();
+    let self_influence = operator.diagonal();
     let largest = found.p.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
     let (mut inside, mut distances, mut outside, mut all, mut count, mut pressures) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     // From contact pressures: if these and the attraction cancel to less than `CANCELLED`, total pressures are round-off.
@@ -173,8 +173,8 @@ fn certify(case: &Case, load: Load, found: &Found) -> Verdict {
     }
     let rounding = operator.rounding(&found.p) + 2.0 * f64::EPSILON * approach.abs();
     let n = f64::max(count, 1.0);
-    let scale = (distances / n).sqrt().max(own * (f64::max(pressures, repulsive) / n).sqrt());
-    let scale = if count > 0.0 { scale } else { scale.max(own * (all / found.p.len() as f64).sqrt()) };
+    let scale = (distances / n).sqrt().max(self_influence * (f64::max(pressures, repulsive) / n).sqrt());
+    let scale = if count > 0.0 { scale } else { scale.max(self_influence * (all / found.p.len() as f64).sqrt()) };
     let ratio = |value: f64, of: f64| if value == 0.0 { 0.0 } else { value / of };
     // The library cuts the attraction off beyond 40 ranges.
     let (nothing, root) = (1e-16 * case.work.at(0) / range, (found.p.len() as f64).sqrt());
@@ -185,9 +185,9 @@ fn certify(case: &Case, load: Load, found: &Found) -> Verdict {
         (
             "the law outside",
             outside.sqrt(),
-            TOLERANCE * f64::max(all, repulsive).sqrt() + (rounding / own + nothing) * root,
+            TOLERANCE * f64::max(all, repulsive).sqrt() + (rounding / self_influence + nothing) * root,
         ),
-        ("contact pressures", pulled, 1e-4 * largest + rounding / own),
+        ("contact pressures", pulled, 1e-4 * largest + rounding / self_influence),
     ] {
         let details = || format!("{what} {:e}: {}", ratio(value, most), case.describe());
         verdict.unless(value <= most, "the conditions of adhesion hold", details);

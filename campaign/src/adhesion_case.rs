@@ -204,10 +204,10 @@ fn below_mean(h: &[f64], load: Load) -> Load {
 /// Random effects that are solved together with adhesion.
 fn effects(random: &mut Random, grid: &Grid, bodies: ([f64; 2], [f64; 2])) -> Effects {
     let mut effects = Effects::default();
-    let own = free(1, 1, grid.dx, grid.dy, compliance(bodies.0, bodies.1)).at(0, 0);
+    let self_influence = free(1, 1, grid.dx, grid.dy, compliance(bodies.0, bodies.1)).at(0, 0);
     match random.integer(0, 11) {
         0 => {
-            let size = own * random.decades(1e-2, 1.0);
+            let size = self_influence * random.decades(1e-2, 1.0);
             effects.layer = Some(match random.chance(0.5) {
                 true => Values::Uniform(size),
                 false => Values::PerElement((0..grid.len()).map(|_| size * random.uniform()).collect()),

@@ -24,7 +24,8 @@ pub struct Sliding {
     rigid: Option<Pair>,
     /// The tables xx, yy, xy, xz, yz.
     tables: Vec<Vec<f64>>,
-    own: Vec<contact_normal_influence>,
+    /// The structs of these tables.
+    structs: Vec<contact_normal_influence>,
     /// Whether the oracle has the coefficients and the slip of the call.
     certified: bool,
     pub input: contact_normal_friction,
@@ -51,7 +52,7 @@ fn pair(bytes: &mut Bytes<'_>, n: usize, named: bool) -> Option<Pair> {
 }
 
 /// A table as a struct of friction.
-fn own_table((cx, cy): (i32, i32), coefficients: &[f64], scale: f64) -> contact_normal_influence {
+fn influence_struct((cx, cy): (i32, i32), coefficients: &[f64], scale: f64) -> contact_normal_influence {
     contact_normal_influence { cx, cy, coefficients: coefficients.as_ptr(), scale, ..Default::default() }
 }
 
@@ -68,7 +69,7 @@ impl Sliding {
             previous: pair(bytes, n, named & 6 == 2),
             rigid: pair(bytes, n, named & 24 == 8),
             tables: Vec::new(),
-            own: Vec::new(),
+            structs: Vec::new(),
             certified: true,
             input: initialised(contact_normal_friction_init),
             traction: [0, 1].map(|_| vec![SENTINEL; ROOM]),
@@ -140,10 +141,10 @@ impl Sliding {
             // The tables of the coupling of unlike bodies: here 0.
             self.tables.extend([vec![0.0; self.tables[0].len()], vec![0.0; self.tables[0].len()]]);
         }
-        self.own = self.tables.iter().map(|table| own_table((cx, cy), table, scale)).collect();
-        input.influence = [0, 1, 2].map(|k: usize| &raw const self.own[k]);
-        if self.own.len() > 3 {
-            input.influence_cross = [3, 4].map(|k: usize| &raw const self.own[k]);
+        self.structs = self.tables.iter().map(|table| influence_struct((cx, cy), table, scale)).collect();
+        input.influence = [0, 1, 2].map(|k: usize| &raw const self.structs[k]);
+        if self.structs.len() > 3 {
+            input.influence_cross = [3, 4].map(|k: usize| &raw const self.structs[k]);
         }
     }
 

@@ -199,9 +199,10 @@ impl Handle {
     }
 
     /// Sets other coefficients; returns the status.
-    pub fn set_influence(&mut self, own: &UserCoefficients) -> i32 {
+    pub fn set_influence(&mut self, table: &UserCoefficients) -> i32 {
         let mut influence = initialised(contact_normal_influence_init);
-        (influence.cx, influence.cy, influence.coefficients) = (own.cx as i32, own.cy as i32, own.values.as_ptr());
+        (influence.cx, influence.cy, influence.coefficients) =
+            (table.cx as i32, table.cy as i32, table.values.as_ptr());
         // SAFETY: a struct with a table of the size that it says.
         unsafe { contact_normal_solver_set_influence(self.0, &influence, std::ptr::null()) }
     }

@@ -6,8 +6,8 @@
 //! c (1/t) integral over the element of F(r/t),    F(rho) = integral over s > 0 of (B(s) - 1) J0(s rho),    c = (1 - nu1)/(2 pi G1)
 //! ```
 //!
-//! F is analytic in |Im rho| < 2. It is tabulated along the distance, and integrated over elements by Gauss's rule, on panels at most two thicknesses long
-//! beside the load. With two periods each wave k of a grid and its aliases has `2 pi c (B(k t) - 1)/k` times the means
+//! F is analytic in |Im rho| < 2. It is tabulated along the distance, and integrated over elements by Gauss's rule, on panels at most two thicknesses
+//! long beside the load. With two periods each wave k of a grid and its aliases has `2 pi c (B(k t) - 1)/k` times the means
 //! over elements, and the mean pressure P compresses the layer by `P t/M`, `M = 2 G1 (1 - nu1)/(1 - 2 nu1)`.
 
 use std::f64::consts::PI;
@@ -113,9 +113,9 @@ impl Coating {
 
     /// G and nu at the surfaces of both bodies, which are the same.
     pub fn at_surface(&self) -> ([f64; 2], [f64; 2]) {
-        let own = (self.shear_modulus, self.poisson_ratio);
+        let below = (self.shear_modulus, self.poisson_ratio);
         let layer = self.layers[0].filter(|layer| layer.thickness > 0.0);
-        layer.map_or(own, |layer| ([layer.shear_modulus; 2], [layer.poisson_ratio; 2]))
+        layer.map_or(below, |layer| ([layer.shear_modulus; 2], [layer.poisson_ratio; 2]))
     }
 
     /// The coefficients of both bodies; with one period those of half-spaces of the materials at the surface.

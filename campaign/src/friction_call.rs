@@ -35,12 +35,12 @@ fn scene(place: &Place, slide: Option<(&Slide, From)>) -> Scene {
     let effects = effect_structs(&place.effects);
     effects.point_from(&mut scene, &place.effects);
     let mut friction = slide.map(|(slide, from)| Box::new(friction(slide, from)));
-    let tables = place.own.as_ref().map(|own| Structs::new(own));
-    if let (Some(friction), Some(tables), Some(own)) = (&mut friction, &tables, &place.own) {
-        tables.put(own, friction);
+    let structs = place.traction_tables.as_ref().map(|tables| Structs::new(tables));
+    if let (Some(friction), Some(structs), Some(tables)) = (&mut friction, &structs, &place.traction_tables) {
+        structs.put(tables, friction);
     }
     scene.friction = friction.as_ref().map_or(null(), |friction| &raw const **friction);
-    Scene { scene, _effects: effects, _friction: friction, _tables: tables }
+    Scene { scene, _effects: effects, _friction: friction, _tables: structs }
 }
 
 fn friction(slide: &Slide, from: From) -> contact_normal_friction {
@@ -159,9 +159,9 @@ pub fn call_changed(
     change: impl FnOnce(&mut contact_normal_friction),
 ) -> Found {
     let mut changed = friction(slide, from);
-    let tables = place.own.as_ref().map(|own| Structs::new(own));
-    if let (Some(tables), Some(own)) = (&tables, &place.own) {
-        tables.put(own, &mut changed);
+    let structs = place.traction_tables.as_ref().map(|tables| Structs::new(tables));
+    if let (Some(structs), Some(tables)) = (&structs, &place.traction_tables) {
+        structs.put(tables, &mut changed);
     }
     change(&mut changed);
     run((place, None, stop), |scene, options, fields, report| {
@@ -218,7 +218,7 @@ impl Handle {
     pub fn new(place: &Place, stop: &Stop) -> Result<Handle, (i32, String)> {
         let mut canceller = Canceller { calls: 0, at: 0 };
         // Tables belong to the set-up of a handle.
-        let nothing = place.own.as_ref().map(|own| Slide::nothing(&own.kind, place.grid.len()));
+        let nothing = place.traction_tables.as_ref().map(|tables| Slide::nothing(&tables.kind, place.grid.len()));
         let slide = nothing.as_ref().map(|slide| (slide, From::Slide));
         let (scene, options) = (scene(place, slide), options(stop, &mut canceller));
         let mut handle = null_mut();

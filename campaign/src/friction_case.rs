@@ -120,8 +120,8 @@ impl Case {
             rigid: random.chance(0.15).then(|| [0, 1].map(|_| noise(random, own_size))),
             sensitivities: false,
         };
-        if let Some(own) = &place.own {
-            slide.fit(&own.kind, &mut random.beside(0x7ab1e), &grid);
+        if let Some(tables) = &place.traction_tables {
+            slide.fit(&tables.kind, &mut random.beside(0x7ab1e), &grid);
         }
         let mut stop = Stop::unhindered(random);
         if random.chance(0.1) {
@@ -185,7 +185,7 @@ impl Case {
     pub fn kind(&self) -> String {
         let bodies = match () {
             _ if self.place.effects.coating.is_some() => "coated",
-            _ if self.place.own.is_some() => "tables of like",
+            _ if self.place.traction_tables.is_some() => "tables of like",
             _ if self.place.is_alike() => "like",
             _ => "unlike",
         };

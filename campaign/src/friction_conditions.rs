@@ -84,8 +84,8 @@ pub fn conditions(case: &Case, found: &Found, before: &Before) -> Conditions {
         if !(found.p[i] > 0.0) {
             continue;
         }
-        let (own, largest) = slide.rigid_slip(&case.place.grid, i, creepage);
-        let w = [0, 1].map(|k: usize| own[k] + d.sideways[i][k]);
+        let (rigid_slip, largest) = slide.rigid_slip(&case.place.grid, i, creepage);
+        let w = [0, 1].map(|k: usize| rigid_slip[k] + d.sideways[i][k]);
         rounding = rounding.max(8.0 * f64::EPSILON * largest + d.rounding);
         let s = [0, 1].map(|k: usize| w[k] + d.by_q[i][k] - d.before[i][k]);
         slip_error = slip_error.max(length([0, 1].map(|k: usize| s[k] - found.slip[i][k])));
@@ -100,8 +100,8 @@ pub fn conditions(case: &Case, found: &Found, before: &Before) -> Conditions {
         }
         left.push(length(rest));
         rigid.push(length(w));
-        let (own, _) = slide.rigid_slip(&case.place.grid, i, given);
-        without_found.push(length([0, 1].map(|k: usize| own[k] + d.sideways[i][k])));
+        let (given_slip, _) = slide.rigid_slip(&case.place.grid, i, given);
+        without_found.push(length([0, 1].map(|k: usize| given_slip[k] + d.sideways[i][k])));
         let step = [0, 1].map(|k: usize| d.by_q[i][k] - if is_steady { d.before[i][k] } else { 0.0 });
         displaced.push(length(step));
     }

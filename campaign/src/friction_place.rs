@@ -10,7 +10,7 @@ use crate::effects::{self, Effects, Values};
 use crate::grid::{Grid, Load};
 use crate::half_space::{compliance, free};
 use crate::measured;
-use crate::own_tractions::{Kind, OwnTractions};
+use crate::own_tractions::{Kind, TractionTables};
 use crate::random::Random;
 use crate::scales::{self, Scales};
 use crate::surface;
@@ -28,7 +28,7 @@ pub struct Place {
     /// At most a coating of both bodies, a layer and a limit.
     pub effects: Effects,
     /// The caller's own tangential coefficients.
-    pub own: Option<Arc<OwnTractions>>,
+    pub traction_tables: Option<Arc<TractionTables>>,
 }
 
 /// In most cases like bodies, now and then with nu = 0, for which shifts start from a smaller load.
@@ -67,9 +67,9 @@ fn large(random: &mut Random, unit: f64) -> Grid {
         _ => (random.integer(50, 100), random.integer(50, 100)),
     };
     // A separate sequence, so that the other random numbers do not change.
-    let own = &mut random.beside(0x11e5);
-    if my == 1 && own.chance(0.15) {
-        return Grid { mx: own.integer(1000, 4000), my, dx: unit, dy: unit * own.decades(1e2, 1e5) };
+    let for_lines = &mut random.beside(0x11e5);
+    if my == 1 && for_lines.chance(0.15) {
+        return Grid { mx: for_lines.integer(1000, 4000), my, dx: unit, dy: unit * for_lines.decades(1e2, 1e5) };
     }
     // Rollers: elements at least as long as the contact is wide.
     if my == 1 && random.chance(0.4) {
@@ -85,7 +85,7 @@ impl Place {
     pub fn new(grid: Grid, shear_modulus: [f64; 2], poisson_ratio: [f64; 2]) -> Place {
         let (surface, h) = ("flat".into(), vec![0.0; grid.len()]);
         let (load, effects) = (Load::Force(0.0), Effects::default());
-        Place { grid, shear_modulus, poisson_ratio, surface, h, load, effects, own: None }
+        Place { grid, shear_modulus, poisson_ratio, surface, h, load, effects, traction_tables: None }
     }
 
     /// A small place, or a measured one.
@@ -103,19 +103,19 @@ impl Place {
         let height = unit * random.decades(1e-4, 1.0);
         (place.surface, place.h) = (surface, h.iter().map(|h| h * height).collect());
         // A separate sequence, so that the other random numbers do not change.
-        let own = &mut random.beside(0xc0a7);
+        let for_bodies = &mut random.beside(0xc0a7);
         // The quadrature of the oracle excludes slender elements.
-        if own.chance(0.15) && place.is_alike() && (0.1..=10.0).contains(&(grid.dx / grid.dy)) {
-            let coating = coating::on_both(own, &grid, (shear_modulus[0], poisson_ratio[0]));
+        if for_bodies.chance(0.15) && place.is_alike() && (0.1..=10.0).contains(&(grid.dx / grid.dy)) {
+            let coating = coating::on_both(for_bodies, &grid, (shear_modulus[0], poisson_ratio[0]));
             place.shear_modulus = coating.shear_modulus;
             place.effects.coating = Some(coating);
-        } else if own.chance(0.1) && place.is_alike() && grid.len() <= 600 {
-            place.take_tables(own);
+        } else if for_bodies.chance(0.1) && place.is_alike() && grid.len() <= 600 {
+            place.take_tables(for_bodies);
         }
         place.press(random, is_measured);
         if random.chance(0.1) {
-            let own = free(1, 1, grid.dx, grid.dy, place.compliance()).at(0, 0);
-            place.effects.layer = Some(effects::layer(random, &grid, own));
+            let self_influence = free(1, 1, grid.dx, grid.dy, place.compliance()).at(0, 0);
+            place.effects.layer = Some(effects::layer(random, &grid, self_influence));
         }
         if random.chance(0.15) {
             place.effects.limit = place.limit(random);
@@ -131,9 +131,9 @@ impl Place {
             let [xx, yy, xy, ..] = element.at([kx as f64 * grid.dx, ky as f64 * grid.dy]).0;
             [xx, yy, xy]
         };
-        let own = OwnTractions::new(kind, &grid, &at);
-        self.effects.row_tables = own.of_pressures(&grid, self.compliance());
-        self.own = Some(Arc::new(own));
+        let tables = TractionTables::new(kind, &grid, &at);
+        self.effects.row_tables = tables.of_pressures(&grid, self.compliance());
+        self.traction_tables = Some(Arc::new(tables));
     }
 
     /// The materials at the surfaces of both bodies: those of the coating, or of the bodies.
@@ -172,8 +172,8 @@ impl Place {
 
     /// The compliance of the surfaces.
     fn compliance(&self) -> f64 {
-        let own = || compliance(self.shear_modulus, self.poisson_ratio);
-        self.effects.coating.as_ref().map_or_else(own, Coating::compliance)
+        let of_bodies = || compliance(self.shear_modulus, self.poisson_ratio);
+        self.effects.coating.as_ref().map_or_else(of_bodies, Coating::compliance)
     }
 
     fn scales(&self) -> Scales {

@@ -78,8 +78,10 @@ impl Law {
         let slide = &mut case.slide;
         slide.distance = 0.0;
         slide.direction = [0.0, std::f64::consts::PI][usize::from(random.chance(0.3))];
-        if let Some(own) = case.place.own.as_ref().filter(|own| matches!(own.kind, Kind::Uneven { .. })) {
-            (slide.motion, slide.direction) = (CONTACT_NORMAL_MOTION_STEADY_ROLLING, own.kind.direction());
+        if let Some(tables) =
+            case.place.traction_tables.as_ref().filter(|tables| matches!(tables.kind, Kind::Uneven { .. }))
+        {
+            (slide.motion, slide.direction) = (CONTACT_NORMAL_MOTION_STEADY_ROLLING, tables.kind.direction());
         }
         slide.sensitivities = false;
         law

@@ -1,7 +1,8 @@
-//! Laws of friction and layers that yield, in random scenes. Each result is certified by the campaign's own products and by its own march along the paths of
-//! particles. Its wear, and the temperatures by its heat, are compared with the campaign's own sums.
+//! Laws of friction and layers that yield, in random scenes. Each result is certified by the campaign's own products and by its own march along the
+//! paths of particles. Its wear, and the temperatures by its heat, are compared with the campaign's own sums.
 //!
-//! A result meets two conditions: those of stick and slip with the bounds fixed at |q| (`friction_conditions`), and that `|q|` is the bound of the slip.
+//! A result meets two conditions: those of stick and slip with the bounds fixed at |q| (`friction_conditions`), and that `|q|` is the bound of the
+//! slip.
 
 use contact_normal::ffi::*;
 
@@ -40,8 +41,8 @@ impl Run {
             _ => "1 and more",
         };
         let law = if self.law.is_one() { "law" } else { "ideal plastic" };
-        let own = if self.case.place.own.is_some() { ", own tables" } else { "" };
-        format!("{}{own}, {law}, branch {}, law_slope {range}", self.case.motion(), self.law.branch)
+        let tables = if self.case.place.traction_tables.is_some() { ", own tables" } else { "" };
+        format!("{}{tables}, {law}, branch {}, law_slope {range}", self.case.motion(), self.law.branch)
     }
 }
 
@@ -52,9 +53,11 @@ pub fn run(random: &mut Random) -> Run {
         place.shear_modulus[1] = place.shear_modulus[0];
         place.poisson_ratio[1] = place.poisson_ratio[0];
         // By other random numbers, so that the rest of the case does not change.
-        let own = &mut random.beside(0x1a35);
-        if own.chance(0.25) && place.effects.coating.is_none() && place.own.is_none() && place.surface != "roller" {
-            place.take_tables(own);
+        let for_tables = &mut random.beside(0x1a35);
+        let may_have_tables =
+            place.effects.coating.is_none() && place.traction_tables.is_none() && place.surface != "roller";
+        if for_tables.chance(0.25) && may_have_tables {
+            place.take_tables(for_tables);
         }
         let without = frictionless(&place, &Stop::sharp(random));
         if without.status != CONTACT_NORMAL_OK || without.p.iter().all(|p| !(*p > 0.0)) {
@@ -89,8 +92,8 @@ impl Run {
         });
         let before = Before { q: first.q.clone(), p: first.p.clone() };
         self.check(&case, &kept, (&before, &particles));
-        // The same step from the caller's tractions and particles. The solve starts elsewhere, so that it may find another one of several solutions. The
-        // yield limits may differ from particle to particle.
+        // The same step from the caller's tractions and particles. The solve starts elsewhere, so that it may find another one of several solutions.
+        // The yield limits may differ from particle to particle.
         let particles = self.varied(particles);
         let mut handed = case.clone();
         handed.slide.previous = Some([0, 1].map(|k: usize| first.q.iter().map(|q| q[k]).collect()));
@@ -181,8 +184,8 @@ impl Run {
         let q_there = if is_steady { &found.q } else { &before.q };
         let layer = |k: usize| -> Vec<f64> {
             let there = |i: usize| Law::upstream(case, i).map_or(0.0, |j| q_there[j][k]);
-            let own = |i: usize| case.slide.rigid.as_ref().map_or(0.0, |own| own[k][i]);
-            (0..found.q.len()).map(|i| own(i) + law.compliance * (found.q[i][k] - there(i))).collect()
+            let rigid = |i: usize| case.slide.rigid.as_ref().map_or(0.0, |rigid| rigid[k][i]);
+            (0..found.q.len()).map(|i| rigid(i) + law.compliance * (found.q[i][k] - there(i))).collect()
         };
         frozen.slide.rigid = Some([layer(0), layer(1)]);
         let (mut left, mut rest, mut count, mut floor) = (0.0, 0.0, 0.0f64, 0.0f64);

@@ -32,7 +32,7 @@ pub enum Kind {
 
 /// The tables xx, yy and xy.
 #[derive(Clone, Debug)]
-pub struct OwnTractions {
+pub struct TractionTables {
     pub kind: Kind,
     cx: usize,
     cy: usize,
@@ -90,9 +90,9 @@ impl Kind {
     }
 }
 
-impl OwnTractions {
+impl TractionTables {
     /// Tables for a grid and steps of a few elements.
-    pub fn new(kind: Kind, grid: &Grid, at: At<'_>) -> OwnTractions {
+    pub fn new(kind: Kind, grid: &Grid, at: At<'_>) -> TractionTables {
         let (cx, is_by_row) = (grid.mx + STEP + 1, matches!(kind, Kind::Rows { .. }));
         let cy = if is_by_row { grid.my } else { grid.my + 1 };
         let mut values = [Vec::new(), Vec::new(), Vec::new()];
@@ -107,7 +107,7 @@ impl OwnTractions {
             }
             _ => (-(cy as i64)..cy as i64).for_each(|ky| add(ky, 1.0)),
         }
-        OwnTractions { kind, cx, cy, values }
+        TractionTables { kind, cx, cy, values }
     }
 
     /// The coefficients of pressures that belong to tables per loaded row, or None: those of the bodies.
@@ -131,7 +131,7 @@ pub struct Structs {
 
 impl Structs {
     /// Structs that point to these tables.
-    pub fn new(own: &OwnTractions) -> Box<Structs> {
+    pub fn new(own: &TractionTables) -> Box<Structs> {
         let table = |values: &Vec<f64>| {
             let mut table = initialised(contact_normal_influence_init);
             (table.cx, table.cy, table.coefficients) = (own.cx as i32, own.cy as i32, values.as_ptr());
@@ -146,7 +146,7 @@ impl Structs {
     }
 
     /// Sets the tables of a friction struct.
-    pub fn put(&self, own: &OwnTractions, friction: &mut contact_normal_friction) {
+    pub fn put(&self, own: &TractionTables, friction: &mut contact_normal_friction) {
         match own.kind {
             Kind::Rows { .. } => friction.row_tables = self.rows.each_ref().map(|rows| &raw const *rows),
             _ => friction.influence = self.tables.each_ref().map(|table| &raw const *table),

@@ -243,8 +243,8 @@ fn check(case: &Case, (s, left, rounding): (f64, &[f64], f64), found: &Outputs) 
     let Effects { coating, influence, row_tables, .. } = &mut elastic.effects;
     let layers = coating.iter_mut().flat_map(|coating| coating.layers.iter_mut().flatten());
     layers.for_each(|layer| layer.shear_modulus /= s);
-    let own = influence.iter_mut().chain(row_tables).flat_map(|own| own.values.iter_mut());
-    own.for_each(|value| *value *= s);
+    let coefficients = influence.iter_mut().chain(row_tables).flat_map(|table| table.values.iter_mut());
+    coefficients.for_each(|value| *value *= s);
     elastic.h.iter_mut().zip(left).for_each(|(h, left)| *h += left);
     let largest = left.iter().fold(0.0, |most: f64, left| most.max(left.abs()));
     elastic.h_rounding = ACCURACY * largest + rounding;

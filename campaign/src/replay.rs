@@ -95,14 +95,19 @@ impl Reader<'_> {
             let patch = self.integers("patches->patch", patches.patch, grid.len())?;
             effects.patches = Some(Patches { count, patch, factors });
         }
-        if let Some(own) = influence {
-            let (cx, cy) = (own.cx.max(0) as usize, own.cy.max(0) as usize);
-            effects.influence = Some(self.own("influence", own.coefficients, own.scale, (cx, cy, cx * cy * 4))?);
+        if let Some(table) = influence {
+            let (cx, cy) = (table.cx.max(0) as usize, table.cy.max(0) as usize);
+            effects.influence =
+                Some(self.user_coefficients("influence", table.coefficients, table.scale, (cx, cy, cx * cy * 4))?);
         }
-        if let Some(own) = row_tables {
-            let (cx, rows) = (own.cx.max(0) as usize, own.rows.max(0) as usize);
-            effects.row_tables =
-                Some(self.own("row_tables", own.coefficients, own.scale, (cx, rows, rows * rows * cx * 2))?);
+        if let Some(tables) = row_tables {
+            let (cx, rows) = (tables.cx.max(0) as usize, tables.rows.max(0) as usize);
+            effects.row_tables = Some(self.user_coefficients(
+                "row_tables",
+                tables.coefficients,
+                tables.scale,
+                (cx, rows, rows * rows * cx * 2),
+            )?);
         }
         if let Some(values) = self.0.doubles("handle.influence") {
             effects.influence = Some(UserCoefficients { cx: grid.mx, cy: grid.my, values });
@@ -118,7 +123,8 @@ impl Reader<'_> {
         Ok(effects)
     }
 
-    fn own(
+    /// The coefficients of a table, or of row tables, times their scale.
+    fn user_coefficients(
         &self,
         name: &str,
         at: *const f64,

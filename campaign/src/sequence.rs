@@ -99,10 +99,10 @@ fn spoil(case: &Case, random: &mut Random, handle: &mut Handle, found: &mut Foun
 /// The same effects with other values must be used, or refused by name, and never ignored.
 fn change_effects(case: &Case, random: &mut Random, handle: &mut Handle, held: &mut Held, found: &mut Found) {
     let mut changed = case.clone();
-    let own = case.operator().diagonal();
+    let self_influence = case.operator().diagonal();
     let effects = &mut changed.effects;
     if effects.layer.is_some() {
-        effects.layer = Some(effects::layer(random, &case.grid, own));
+        effects.layer = Some(effects::layer(random, &case.grid, self_influence));
     } else if effects.patches.is_some() {
         effects.patches = Some(effects::patches(random, &case.grid));
     } else if let Some(table) = effects.influence.as_mut().or(effects.row_tables.as_mut()) {

@@ -1,4 +1,4 @@
-//! Other coefficients on a handle: used from then on, or refused without any effect.
+//! Sets other influence coefficients on a handle. The handle must use them from then on, or refuse them and stay as it was.
 
 use contact_normal::ffi::*;
 
@@ -10,20 +10,20 @@ use crate::random::Random;
 use crate::rules::check;
 use crate::verdict::Verdict;
 
-/// A handle that was set up without a table refuses one.
-fn without_table(case: &Case, own: &UserCoefficients) -> Verdict {
+/// Checks that a handle that was set up without a table refuses one.
+fn without_table(case: &Case, table: &UserCoefficients) -> Verdict {
     let Ok(mut handle) = Handle::new(case) else { return Verdict::default() };
-    let status = handle.set_influence(own);
+    let status = handle.set_influence(table);
     if status == CONTACT_NORMAL_INVALID_ARGUMENT {
         return check(case, &handle.solve(case, false));
     }
     Verdict::failed("a handle without a table takes none", format!("status {status}"))
 }
 
-/// A handle whose coefficients change from solve to solve, without a period, row tables, or a coating.
+/// Changes the coefficients of a handle from solve to solve, and checks each result. Scenes with a period, row tables or a coating are skipped.
 pub fn run(case: &Case, random: &mut Random) -> Verdict {
-    let named = &case.effects;
-    if named.period.is_some() || named.row_tables.is_some() || named.coating.is_some() {
+    let effects = &case.effects;
+    if effects.period.is_some() || effects.row_tables.is_some() || effects.coating.is_some() {
         return Verdict::default();
     }
     let mut case = case.clone();

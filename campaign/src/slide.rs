@@ -95,11 +95,11 @@ impl Slide {
         let centre = |k: usize, m: usize, d: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
         let x = centre(i % grid.mx, grid.mx, grid.dx) - self.spin_centre[0] + step[0] / 6.0;
         let y = centre(i / grid.mx, grid.my, grid.dy) - self.spin_centre[1] + step[1] / 6.0;
-        let own = self.rigid.as_ref().map_or([0.0; 2], |own| [own[0][i], own[1][i]]);
+        let [wx, wy] = self.rigid.as_ref().map_or([0.0; 2], |rigid| [rigid[0][i], rigid[1][i]]);
         let arms = self.spin_centre[0].abs() + self.spin_centre[1].abs() + x.abs() + y.abs();
         let sizes = length * (creepage[0].abs() + creepage[1].abs() + self.spin.abs() * arms);
-        let w = [length * (creepage[0] - self.spin * y) + own[0], length * (creepage[1] + self.spin * x) + own[1]];
-        (w, sizes + own[0].abs() + own[1].abs())
+        let w = [length * (creepage[0] - self.spin * y) + wx, length * (creepage[1] + self.spin * x) + wy];
+        (w, sizes + wx.abs() + wy.abs())
     }
 
     /// The tractions before the step.

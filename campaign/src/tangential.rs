@@ -33,7 +33,7 @@ impl Operator {
         let Grid { mx, my, dx, dy } = place.grid;
         let coating = place.effects.coating.as_ref();
         let Compliance { shear, poisson, unlike } = place.materials();
-        let (element, own) = (place.element(), place.own.as_ref().map(|own| &own.kind));
+        let (element, kind) = (place.element(), place.traction_tables.as_ref().map(|tables| &tables.kind));
         let mut largest: f64 = 0.0;
         let coat = coating.map(|coating| Coat::new(coating, &place.grid, by));
         let mut entry = |kx: i64, ky: i64| {
@@ -46,7 +46,7 @@ impl Operator {
             entry
         };
         let reach = |m: usize| 1 - m as i64..m as i64;
-        let table: Vec<Entry> = match own {
+        let table: Vec<Entry> = match kind {
             None => reach(my).flat_map(|ky| reach(mx).map(move |kx| (kx, ky))).map(|(kx, ky)| entry(kx, ky)).collect(),
             Some(kind) => {
                 // Steps are whole elements along x.
@@ -68,7 +68,7 @@ impl Operator {
         let steps = 4.0 + (16.0 * table.len() as f64).log2();
         let quadrature = if coat.is_some() { ACCURACY * greatest } else { 0.0 };
         let rounding = [64.0 * f64::EPSILON * terms + quadrature, 8.0 * steps * f64::EPSILON * norm];
-        let rows = match own {
+        let rows = match kind {
             Some(Kind::Rows { d }) => Some(d.clone()),
             _ => None,
         };

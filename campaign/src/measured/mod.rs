@@ -100,10 +100,10 @@ fn choose(random: &mut Random, grid: &Grid) -> Choice {
 
 /// Whether bodies are coated: only on small grids without slender elements, because the oracle integrates by quadrature.
 fn is_coated(random: &mut Random, grid: &Grid, effects: &Effects) -> bool {
-    let own = effects.influence.is_some() || effects.row_tables.is_some();
+    let has_user_table = effects.influence.is_some() || effects.row_tables.is_some();
     let one_period = matches!(effects.period, Some((true, false) | (false, true)));
     let square = (0.1..=10.0).contains(&(grid.dx / grid.dy));
-    !own && !one_period && square && grid.mx.max(grid.my) <= 130 && random.chance(0.1)
+    !has_user_table && !one_period && square && grid.mx.max(grid.my) <= 130 && random.chance(0.1)
 }
 
 /// Mostly AUTO; on large grids no method that may take thousands of cycles.
