@@ -1,4 +1,5 @@
-//! Random cases of usual surfaces: measured maps with their faults, line scans, strips, punches, gratings, on grids of 1 to 60000 elements.
+//! Random cases with surfaces as users bring them: measured maps with their faults, line scans, strips, punches and gratings, on grids of up to 60000
+//! elements.
 
 mod faults;
 mod grids;
@@ -15,7 +16,7 @@ use crate::half_space::compliance;
 use crate::random::Random;
 use crate::scales::{self, Scales};
 
-/// The name and the undeformed distances of a random surface, in an arbitrary unit.
+/// A random surface: its name, with the faults, and its undeformed distances in an arbitrary unit.
 pub fn surface(random: &mut Random, grid: &Grid) -> (String, Vec<f64>) {
     let (mut name, mut h) = heights::any(random, grid);
     for fault in faults::any(random, grid, &mut h) {
@@ -66,14 +67,14 @@ pub fn case(seed: u64) -> Case {
     }
 }
 
-/// Shifts some surfaces by a constant, and flattens others. Returns the addition to the name.
+/// Shifts some surfaces by a constant, and flattens others. Returns what is added to the name of the surface.
 fn datum(random: &mut Random, height: f64, h: &mut [f64]) -> &'static str {
-    let (is_other, is_flat) = (random.chance(0.1), random.chance(0.02));
-    let level = if is_other || is_flat { height * random.pick(&[1.0 / 3.0, -1.0, 30.0, 1e3]) } else { 0.0 };
+    let (is_shifted, is_flat) = (random.chance(0.1), random.chance(0.02));
+    let level = if is_shifted || is_flat { height * random.pick(&[1.0 / 3.0, -1.0, 30.0, 1e3]) } else { 0.0 };
     for h in h.iter_mut().filter(|h| h.is_finite()) {
         *h = if is_flat { level } else { *h + level };
     }
-    match (is_other, is_flat) {
+    match (is_shifted, is_flat) {
         (_, true) => " flattened",
         (true, false) => " above a datum",
         _ => "",
@@ -83,7 +84,7 @@ fn datum(random: &mut Random, height: f64, h: &mut [f64]) -> &'static str {
 /// Chooses the effects of a scene. Row tables are chosen on small grids only, because their products take long.
 fn choose(random: &mut Random, grid: &Grid) -> Choice {
     let mut choice = Choice::default();
-    // Sums over the images of slender elements take long.
+    // With a period, the sums over images take long for slender elements.
     let slender = grid.dx.max(grid.dy) > 8.0 * grid.dx.min(grid.dy);
     if !slender && random.chance(0.45) {
         choice.period = Some(random.pick(&[(true, false), (false, true), (true, true), (true, true)]));
@@ -98,7 +99,7 @@ fn choose(random: &mut Random, grid: &Grid) -> Choice {
     choice
 }
 
-/// Whether bodies are coated: only on small grids without slender elements, because the oracle integrates by quadrature.
+/// Whether the bodies are coated. They may be on small grids without slender elements only, because the campaign integrates coatings by quadrature.
 fn is_coated(random: &mut Random, grid: &Grid, effects: &Effects) -> bool {
     let has_user_table = effects.influence.is_some() || effects.row_tables.is_some();
     let one_period = matches!(effects.period, Some((true, false) | (false, true)));
@@ -106,7 +107,7 @@ fn is_coated(random: &mut Random, grid: &Grid, effects: &Effects) -> bool {
     !has_user_table && !one_period && square && grid.mx.max(grid.my) <= 130 && random.chance(0.1)
 }
 
-/// Mostly AUTO; on large grids no method that may take thousands of cycles.
+/// Random options, mostly with the method AUTO. Large grids always have AUTO, because other methods may take thousands of cycles.
 fn how(
     random: &mut Random,
     scales: &Scales,
