@@ -5,7 +5,7 @@
 //! | kind | coefficients | for |
 //! |---|---|---|
 //! | even | `f A` | softer or stiffer like bodies |
-//! | uneven | `A + c sum over n >= 0 of (1 - e) e^n A(x + n)` | bodies that relax, in steady rolling towards +x: softer behind the contact; or mirrored in x |
+//! | uneven | `A + c sum over n >= 0 of (1 - e) e^n A(x + n)` | bodies that relax, in steady rolling towards +x; or mirrored in x |
 //! | rows | `d_i A d_j`, for the rows i and j | row tables. The coefficients of pressures have the same factors |
 
 use contact_normal::ffi::*;
