@@ -1,20 +1,25 @@
-//! The account of a campaign: the cases and their results, the excuses, and every failure.
+//! The account of a campaign: counts of the cases and their results, the excuses, and every broken promise.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Formatter};
 
 use crate::run::{Run, BESIDE};
 
-/// Counts of calls by their end: solved, stopped (> 0), refused (< 0).
+/// Counts of calls by their status.
 #[derive(Clone, Copy, Default)]
 struct Ends {
+    /// Calls with status OK.
     solved: usize,
+    /// Calls with a status > 0.
     stopped: usize,
+    /// Calls with a status < 0.
     refused: usize,
+    /// Cases that broke a promise.
     failed: usize,
 }
 
 impl Ends {
+    /// Adds the calls of one case.
     fn add(&mut self, statuses: &[i32], has_failed: bool) {
         for &status in statuses {
             *match status {
@@ -27,15 +32,16 @@ impl Ends {
     }
 }
 
-/// The excuses of calls: the number of each, and the first seed that has it.
+/// The excuses of calls. Of each: the number of calls, and the first seed.
 #[derive(Default)]
 pub struct Excuses(BTreeMap<&'static str, (usize, u64)>);
 
 impl Excuses {
-    /// Adds the excuses of a seed.
+    /// Adds the excuses of the calls of a seed.
     pub fn add(&mut self, excuses: &[&'static str], seed: u64) {
         for why in excuses {
-            self.0.entry(why).or_insert((0, seed)).0 += 1;
+            let (calls, _first_seed) = self.0.entry(why).or_insert((0, seed));
+            *calls += 1;
         }
     }
 }
@@ -55,16 +61,19 @@ impl Display for Excuses {
 #[derive(Default)]
 pub struct Account {
     cases: usize,
+    /// The processor time of all cases.
     seconds: f64,
+    /// The processor time of the slowest case, and its seed.
     longest: (f64, u64),
     by_effects: BTreeMap<String, Ends>,
     by_method: BTreeMap<&'static str, Ends>,
     by_surface: BTreeMap<String, Ends>,
+    /// The further calls of cases (see [`Run::beside`]).
     beside: BTreeMap<String, Ends>,
-    /// Products of AUTO and the seed, by surface.
+    /// For each surface: the products of calls of AUTO, and their seeds.
     products: BTreeMap<String, Vec<(f64, u64)>>,
     excuses: Excuses,
-    /// Failures by promise: seed and details.
+    /// For each broken promise: the seeds and the details.
     failures: BTreeMap<&'static str, Vec<(u64, String)>>,
 }
 
@@ -105,12 +114,12 @@ impl Account {
         self.failures.is_empty()
     }
 
-    /// The number of calls that were solved. Without it an account of refusals would look clean.
+    /// The number of calls with status OK. Tests require a least number, because an account of refusals only would have no failures.
     pub fn solved(&self) -> usize {
         self.by_method.values().map(|ends| ends.solved).sum()
     }
 
-    /// At most `most` failures of each promise, in full.
+    /// A text with at most `most` failures of each promise.
     pub fn failures(&self, most: usize) -> String {
         let mut text = String::new();
         for (promise, list) in &self.failures {
@@ -123,6 +132,7 @@ impl Account {
     }
 }
 
+/// Writes a table of counts, if there are any.
 fn table<K: Display>(f: &mut Formatter<'_>, title: &str, rows: &BTreeMap<K, Ends>) -> fmt::Result {
     if rows.is_empty() {
         return Ok(());
@@ -135,15 +145,16 @@ fn table<K: Display>(f: &mut Formatter<'_>, title: &str, rows: &BTreeMap<K, Ends
     writeln!(f)
 }
 
+/// Writes a table of the products of AUTO.
 fn table_of_products(f: &mut Formatter<'_>, rows: &BTreeMap<String, Vec<(f64, u64)>>) -> fmt::Result {
     writeln!(f, "| products of AUTO from nothing | calls | median | 90 % | most | seed of that |")?;
     writeln!(f, "|---|---:|---:|---:|---:|---:|")?;
     for (name, list) in rows {
         let mut sorted = list.clone();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64) as usize];
-        let (most, seed) = at(1.0);
-        writeln!(f, "| {name} | {} | {:.1} | {:.1} | {most:.1} | {seed} |", list.len(), at(0.5).0, at(0.9).0)?;
+        let quantile = |part: f64| sorted[(part * (sorted.len() - 1) as f64) as usize];
+        let [(median, _), (ninety, _), (most, seed)] = [0.5, 0.9, 1.0].map(quantile);
+        writeln!(f, "| {name} | {} | {median:.1} | {ninety:.1} | {most:.1} | {seed} |", list.len())?;
     }
     writeln!(f)
 }

@@ -1,4 +1,4 @@
-//! A solve to an accuracy: a ball, whose force or approach is compared with the exact solution (Hertz 1882).
+//! Checks solves to an accuracy: the force or the approach of a ball is compared with the exact solution (Hertz 1882).
 
 use std::f64::consts::PI;
 use std::ffi::c_void;
@@ -12,14 +12,17 @@ use crate::init::initialised;
 use crate::random::Random;
 use crate::verdict::Failure;
 
-/// h = r^2/(2 R), around a place of the rectangle.
+/// A ball, as a paraboloid `h = r^2/(2 R)`.
 struct Ball {
+    /// R.
     radius: f64,
+    /// The lowest point, from the outer corner of element (0, 0).
     centre: [f64; 2],
 }
 
+/// The callback of the library: writes the undeformed distances of the ball on a grid.
 unsafe extern "C" fn write(mx: i32, my: i32, dx: f64, dy: f64, h: *mut f64, user: *mut c_void) -> i32 {
-    // SAFETY: the ball of this call, and room for all values.
+    // SAFETY: `user` is the ball of this call, and `h` has room for all values.
     let (ball, h) = unsafe { (&*user.cast::<Ball>(), std::slice::from_raw_parts_mut(h, (mx * my) as usize)) };
     for (i, value) in h.iter_mut().enumerate() {
         let (ix, iy) = (i % mx as usize, i / mx as usize);
@@ -33,11 +36,11 @@ unsafe extern "C" fn write(mx: i32, my: i32, dx: f64, dy: f64, h: *mut f64, user
 /// The largest number of elements of the finest grid.
 const MOST: i64 = 256 * 256;
 
-/// Checks one search.
+/// Solves one random ball to an accuracy, by approach or by force, and checks the result.
 pub fn check(random: &mut Random) -> Vec<Failure> {
     let (unit, modulus) = (random.decades(1e-3, 1e3), random.decades(1e-6, 1e6));
     let (shear_modulus, poisson_ratio) = ([modulus, f64::INFINITY], [random.between(0.0, 0.5), 0.3]);
-    // E* = 1/(pi c). The contact radius is a part of half the rectangle's shorter side.
+    // The compliance c is 1/(pi E*). The contact radius a is 0.3 to 0.8 of half the shorter side of the grid.
     let e_star = 1.0 / (PI * compliance(shear_modulus, poisson_ratio));
     let (m, ratio) = (random.integer(4, 24) as f64, random.between(0.6, 1.6));
     let (mx, my) = (m as i32, (m * ratio).ceil() as i32);
@@ -71,13 +74,14 @@ pub fn check(random: &mut Random) -> Vec<Failure> {
         accuracy.mx, accuracy.my, last_error()
     );
     let elements = i64::from(accuracy.mx) * i64::from(accuracy.my);
+    // The number of elements across the contact, on the finest grid.
     let across = 2.0 * a / unit * f64::from(accuracy.mx) / m;
-    // With 6 and 7 elements across one estimate in forty is below the error, and none by half (docs/notes/2026-11-accuracy.md).
+    // With 6 and 7 elements across, one estimated error in forty is smaller than the true one, but none by half (docs/notes/2026-11-accuracy.md).
     let allowed = if across < 8.0 { 1.5 * target } else { target };
     let holds = match status {
         CONTACT_NORMAL_OK => reached >= 0.0 && reached <= target && error <= allowed,
-        // The next grid would have been too large. Contacts of less than 6 elements across never meet a target. The centre may lie anywhere within an
-        // element.
+        // The next grid would have been too large. Contacts of less than 6 elements across never meet a target. Here the limit is 7, because the
+        // centre may lie anywhere within an element.
         CONTACT_NORMAL_ITERATION_LIMIT => 4 * elements > MOST && (reached > target || across < 7.0),
         _ => false,
     };

@@ -1,5 +1,5 @@
-//! Adhesion: random scenes through the C ABI, with a step of a handle. Each result is certified by the campaign's own product. A pull that is refused
-//! must exceed the pull-off force of the library.
+//! Solves random scenes with adhesion through the C ABI, by one call or in two steps of a handle. Each result is checked with a product of the
+//! campaign. If the library refuses a tensile force, the force must exceed the pull-off force that the library finds.
 
 use std::ptr::null_mut;
 
@@ -16,22 +16,24 @@ use crate::operator::Operator;
 use crate::random::Random;
 use crate::verdict::Verdict;
 
-/// Twice the tolerance of the library: its measures are norms over all elements, and here the worst element counts too.
+/// Twice the tolerance of the library. The library's residuals are norms over all elements, and some of the checks here are for the worst element.
 const TOLERANCE: f64 = 2e-6;
 
-/// Total pressures have at least this part of the contact pressures as their scale.
+/// The scale of total pressures is at least this part of the contact pressures. Otherwise the scale would be round-off if contact pressures and
+/// attraction cancel.
 const CANCELLED: f64 = 1e-3;
 
 /// The result of a case.
 pub struct Run {
     pub case: Case,
+    /// The statuses of its calls.
     pub statuses: Vec<i32>,
     pub verdict: Verdict,
     /// The work units of the first call, if it was OK.
     pub products: Option<f64>,
 }
 
-/// A random case: solved once, then again or in two steps of a handle.
+/// Makes a random case and solves it. Then solves it again, or in two steps of a handle, and checks all results.
 pub fn run(random: &mut Random) -> Run {
     let case = Case::random(random);
     let mut verdict = Verdict::default();
@@ -53,7 +55,7 @@ pub fn run(random: &mut Random) -> Run {
     Run { case, statuses, verdict, products }
 }
 
-/// Two steps of a handle: the second is not far from the first.
+/// Solves a case in two steps of a handle, and checks both. In the second step the approach changes by `step`.
 fn with_handle(case: &Case, step: f64, statuses: &mut Vec<i32>) -> Verdict {
     let structs = effect_structs(&case.effects);
     let mut scene = bare_scene(&case.grid, &case.h, (case.shear_modulus, case.poisson_ratio), case.load);
@@ -62,7 +64,7 @@ fn with_handle(case: &Case, step: f64, statuses: &mut Vec<i32>) -> Verdict {
     adhesion.work_of_adhesion = case.work.at(0);
     scene.adhesion = &adhesion;
     let mut handle = null_mut();
-    // SAFETY: a struct with the arrays that it declares.
+    // SAFETY: the scene has the arrays that it declares.
     let status = unsafe { contact_normal_solver_new(&scene, std::ptr::null(), &mut handle) };
     if status == CONTACT_NORMAL_INFEASIBLE && case.effects.period == Some((true, true)) {
         return Verdict::excused("two periods in full contact, by approach");
@@ -87,7 +89,7 @@ fn with_handle(case: &Case, step: f64, statuses: &mut Vec<i32>) -> Verdict {
     verdict
 }
 
-/// A solve that is refused leaves the last result, with its contact pressures.
+/// Checks that a refused solve leaves the last result in the handle, with its contact pressures.
 fn stays(case: &Case, handle: *mut contact_normal_solver, last: &Found) -> Verdict {
     let structs = effect_structs(&case.effects);
     let mut scene = bare_scene(&case.grid, &case.h, (case.shear_modulus, case.poisson_ratio), Load::Force(f64::MAX));
@@ -108,7 +110,7 @@ fn stays(case: &Case, handle: *mut contact_normal_solver, last: &Found) -> Verdi
     verdict
 }
 
-/// A pull that is refused must exceed the library's own pull-off force.
+/// Checks that a tensile force that the library refuses exceeds the pull-off force that the library finds.
 fn is_too_much(case: &Case, force: f64, message: &str, statuses: &mut Vec<i32>) -> Verdict {
     let found = ask(case, Load::Force(0.0), &Asked::PullOff);
     statuses.push(found.status);
@@ -123,7 +125,7 @@ fn is_too_much(case: &Case, force: f64, message: &str, statuses: &mut Vec<i32>) 
     verdict
 }
 
-/// Whether a call kept its promises.
+/// The verdict on a call by its status. A result with status OK is checked.
 fn judge(case: &Case, load: Load, found: &Found) -> Verdict {
     match found.status {
         CONTACT_NORMAL_OK => certify(case, load, found),
@@ -142,16 +144,16 @@ fn judge(case: &Case, load: Load, found: &Found) -> Verdict {
     }
 }
 
-/// The conditions, with a product of the campaign's own.
+/// Checks the conditions of contact with adhesion, with a product of the campaign.
 fn certify(case: &Case, load: Load, found: &Found) -> Verdict {
     let c = compliance(case.shear_modulus, case.poisson_ratio);
     let operator = Operator::new(&case.grid, c, &case.effects);
     let u = operator.displace(&found.p);
     let (approach, range) = (found.report.normal.approach, found.report.adhesion.range);
-    let own = operator.diagonal();
+    let self_influence = operator.diagonal();
     let largest = found.p.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
     let (mut inside, mut distances, mut outside, mut all, mut count, mut pressures) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    // From contact pressures: if these and the attraction cancel to less than `CANCELLED`, total pressures are round-off.
+    // The squares of `CANCELLED` times the contact pressures: the least scale of total pressures.
     let mut repulsive = 0.0;
     let (mut penetration, mut pulled): (f64, f64) = (0.0, 0.0);
     for (i, p) in found.p.iter().enumerate() {
@@ -173,10 +175,10 @@ fn certify(case: &Case, load: Load, found: &Found) -> Verdict {
     }
     let rounding = operator.rounding(&found.p) + 2.0 * f64::EPSILON * approach.abs();
     let n = f64::max(count, 1.0);
-    let scale = (distances / n).sqrt().max(own * (f64::max(pressures, repulsive) / n).sqrt());
-    let scale = if count > 0.0 { scale } else { scale.max(own * (all / found.p.len() as f64).sqrt()) };
+    let scale = (distances / n).sqrt().max(self_influence * (f64::max(pressures, repulsive) / n).sqrt());
+    let scale = if count > 0.0 { scale } else { scale.max(self_influence * (all / found.p.len() as f64).sqrt()) };
     let ratio = |value: f64, of: f64| if value == 0.0 { 0.0 } else { value / of };
-    // The library cuts the attraction off beyond 40 ranges.
+    // The library sets the attraction to 0 beyond 40 ranges.
     let (nothing, root) = (1e-16 * case.work.at(0) / range, (found.p.len() as f64).sqrt());
     let mut verdict = Verdict::default();
     for (what, value, most) in [
@@ -185,9 +187,9 @@ fn certify(case: &Case, load: Load, found: &Found) -> Verdict {
         (
             "the law outside",
             outside.sqrt(),
-            TOLERANCE * f64::max(all, repulsive).sqrt() + (rounding / own + nothing) * root,
+            TOLERANCE * f64::max(all, repulsive).sqrt() + (rounding / self_influence + nothing) * root,
         ),
-        ("contact pressures", pulled, 1e-4 * largest + rounding / own),
+        ("contact pressures", pulled, 1e-4 * largest + rounding / self_influence),
     ] {
         let details = || format!("{what} {:e}: {}", ratio(value, most), case.describe());
         verdict.unless(value <= most, "the conditions of adhesion hold", details);
@@ -199,7 +201,7 @@ fn certify(case: &Case, load: Load, found: &Found) -> Verdict {
     verdict
 }
 
-/// In full contact: if a uniform pressure has no displacement, the approach is the mean of h, whatever the pressures are.
+/// Checks the approach in full contact. If a uniform pressure causes no displacement, the approach is the mean of h, whatever the pressures are.
 fn mean_distance(case: &Case, approach: f64, operator: &Operator, rms: f64) -> Verdict {
     let (mut verdict, n) = (Verdict::default(), case.h.len());
     let displaced = operator.displace(&vec![1.0; n]);
@@ -211,13 +213,13 @@ fn mean_distance(case: &Case, approach: f64, operator: &Operator, rms: f64) -> V
     verdict
 }
 
-/// The sum of the pressures is the prescribed force, and tractions are within their bound.
+/// Checks that the pressures carry the prescribed force, and that tractions are within their bound.
 fn forces(case: &Case, load: Load, found: &Found) -> Verdict {
     let mut verdict = Verdict::default();
     let area = case.grid.element_area();
     let (sum, size) = found.p.iter().fold((0.0, 0.0), |(sum, size), p| (sum + p * area, size + p.abs() * area));
     let size = f64::max(size, CANCELLED * found.report.adhesion.repulsive_force);
-    // Bodies beyond the range of a law have a force of less than round-off.
+    // Bodies that are apart by many ranges attract each other by less than this force.
     let nothing = 1e-16 * case.work.at(0) / found.report.adhesion.range * area;
     if let Load::Force(force) = load {
         verdict.unless((sum - force).abs() <= TOLERANCE * size + nothing, "the force is carried", || {

@@ -1,4 +1,4 @@
-//! Calls of scenes with adhesion, and their outputs.
+//! Calls of the library for scenes with adhesion, and their outputs.
 
 use contact_normal::ffi::*;
 
@@ -14,30 +14,35 @@ use crate::init::initialised;
 pub struct Found {
     pub status: i32,
     pub message: String,
+    /// Total pressures: contact pressures minus attraction.
     pub p: Vec<f64>,
+    /// Contact pressures.
     pub q: Vec<f64>,
     pub contact: Vec<i32>,
+    /// Tractions in x and y.
     pub tractions: [Vec<f64>; 2],
     pub report: contact_normal_report,
 }
 
 impl Found {
-    /// The bits that must be equal for equal calls.
+    /// The bits of the results, which must be the same for equal calls.
     pub fn bits(&self) -> Vec<u64> {
         let fields = self.p.iter().chain(&self.q).chain(&self.tractions[0]).map(|value| value.to_bits());
         fields.chain([self.report.normal.approach.to_bits(), self.status as u64]).collect()
     }
 }
 
-/// The function that solves.
+/// The function of the library that is called.
 pub enum Asked {
+    /// `contact_normal_solve`.
     Solve,
+    /// `contact_normal_pull_off`.
     PullOff,
-    /// A handle, and whether it continues from its last result.
+    /// `contact_normal_solver_solve` with this handle, and whether it starts from the last result of the handle.
     Handle(*mut contact_normal_solver, bool),
 }
 
-/// Makes one call.
+/// Makes one call for a case with this load.
 pub fn ask(case: &Case, load: Load, asked: &Asked) -> Found {
     let n = case.grid.len();
     let structs = effect_structs(&case.effects);

@@ -1,4 +1,4 @@
-//! Random scenes with adhesion: balls, rough surfaces, waves and measured surfaces; all laws; approaches, and forces that press or pull.
+//! Random scenes with adhesion: balls, rough surfaces, waves and measured surfaces; all laws; approaches, and compressive or tensile forces.
 
 use contact_normal::ffi::*;
 
@@ -10,30 +10,33 @@ use crate::measured;
 use crate::operator::Operator;
 use crate::random::Random;
 
-/// One scene.
+/// A scene with adhesion.
 pub struct Case {
     pub grid: Grid,
     pub shear_modulus: [f64; 2],
     pub poisson_ratio: [f64; 2],
+    /// The name of the surface.
     pub surface: String,
+    /// Undeformed distances.
     pub h: Vec<f64>,
     pub load: Load,
     pub effects: Effects,
     pub law: i32,
     pub smear: f64,
+    /// The work of adhesion.
     pub work: Values,
     /// The range of the attraction; 0 stands for the shortest range that the elements resolve.
     pub range: f64,
     /// The largest slope of the attraction times the influence of an element on itself.
     pub kappa: f64,
     pub start: i32,
-    /// Friction of like bodies: mu, tau0, and the creepage of a shift divided by the range.
+    /// Friction of like bodies: mu, the shear strength, and the creepage of a shift divided by the range.
     pub friction: Option<(f64, f64, f64)>,
     /// The change of the approach in a second step with the same handle, if there is one.
     pub step: Option<f64>,
 }
 
-/// The largest `-sigma'(e) rho^2/w` of a law.
+/// The largest slope of the attraction of a law, `-sigma'(e) rho^2/w`, with the range rho and the work of adhesion w.
 fn steepness(law: i32, smear: f64) -> f64 {
     match law {
         CONTACT_NORMAL_LAW_DUGDALE => 0.5 / smear,
@@ -43,7 +46,7 @@ fn steepness(law: i32, smear: f64) -> f64 {
     }
 }
 
-/// sigma(e) of element i, for the range `range`.
+/// The attraction sigma(e) of element i at the distance e, for the range `range`.
 pub fn traction(case: &Case, range: f64, i: usize, e: f64) -> f64 {
     let t = e.max(0.0) / range;
     case.work.at(i) / range
@@ -55,7 +58,7 @@ pub fn traction(case: &Case, range: f64, i: usize, e: f64) -> f64 {
         }
 }
 
-/// A grid of 4 to 150 elements a side, or one row. Elements are square or slender.
+/// A random grid: 4 to 150 elements in each direction, or one row. Elements are square or slender.
 fn grid(random: &mut Random) -> Grid {
     let dx = 10f64.powf(random.between(-7.0, 1.0));
     if random.chance(0.06) {
@@ -67,10 +70,11 @@ fn grid(random: &mut Random) -> Grid {
     Grid { mx, my, dx, dy: dx * if random.chance(0.7) { 1.0 } else { random.decades(0.3, 3.0) } }
 }
 
-/// A surface with a suitable work of adhesion.
+/// A surface, and a work of adhesion and scales that suit it.
 struct Surface {
     name: String,
     h: Vec<f64>,
+    /// The work of adhesion.
     work: f64,
     /// The scale of forces: for balls the pull-off force.
     force: f64,
@@ -78,7 +82,7 @@ struct Surface {
     height: f64,
 }
 
-/// One or two balls. Without a load the contact radius is .15 to .6 of half the grid.
+/// One or two balls. The work of adhesion is such that the contact radius without a load is 0.15 to 0.6 of half the grid.
 fn balls(random: &mut Random, grid: &Grid, modulus: f64) -> Surface {
     let half = 0.5 * (grid.mx as f64 * grid.dx).min(grid.my.max(2) as f64 * grid.dy);
     let (a, radius) = (half * random.between(0.15, 0.6), half * random.decades(2.0, 1e4));
@@ -96,7 +100,7 @@ fn balls(random: &mut Random, grid: &Grid, modulus: f64) -> Surface {
     Surface { name: "balls".into(), h: h.collect(), work, force, height: a * a / radius }
 }
 
-/// A rough surface, a punch or a wave. The work of adhesion is a part of the energy to flatten it.
+/// A rough surface, a punch or a wave. The work of adhesion is a part of the elastic energy per area that flattens the surface.
 fn rough(random: &mut Random, grid: &Grid, modulus: f64) -> Surface {
     let (name, mut h) = measured::surface(random, grid);
     let height = grid.dx * random.decades(1e-3, 0.3);
@@ -154,7 +158,7 @@ impl Case {
         }
     }
 
-    /// The case in one line.
+    /// A description of the case in one line.
     pub fn describe(&self) -> String {
         let Grid { mx, my, dx, dy } = self.grid;
         let work = match &self.work {
@@ -168,19 +172,20 @@ impl Case {
     }
 }
 
-/// The works of adhesion: uniform, or one for each element, some of them 0.
+/// A random work of adhesion: uniform, or one for each element, some of which are 0. The largest is `work`.
 fn works(random: &mut Random, work: f64, grid: &Grid) -> Values {
     if random.chance(0.75) {
         return Values::Uniform(work);
     }
     let bare = random.pick(&[0.0, 0.3]);
-    let mut of = |_| if random.chance(bare) { 0.0 } else { work * random.uniform() };
-    let mut works: Vec<f64> = (0..grid.len()).map(&mut of).collect();
-    // kappa is computed from the largest work.
+    let mut of_element = |_| if random.chance(bare) { 0.0 } else { work * random.uniform() };
+    let mut works: Vec<f64> = (0..grid.len()).map(&mut of_element).collect();
+    // kappa belongs to the largest work, so one element has it.
     works[0] = work;
     Values::PerElement(works)
 }
 
+/// A random approach or force.
 fn load(random: &mut Random, surface: &Surface, range: f64) -> Load {
     let lowest = surface.h.iter().copied().fold(f64::INFINITY, f64::min);
     match random.integer(0, 3) {
@@ -190,8 +195,8 @@ fn load(random: &mut Random, surface: &Surface, range: f64) -> Load {
     }
 }
 
-/// For two periods: replaces some loads by approaches from just before the first contact to just below the mean distance. It uses a separate sequence
-/// of random numbers, so that all other scenes do not change.
+/// For two periods: replaces some loads by approaches between the first contact and the mean distance, at which full contact begins. It uses a
+/// separate sequence of random numbers, so that all other scenes of the seeds stay the same.
 fn below_mean(h: &[f64], load: Load) -> Load {
     let mut random = Random::new(h.iter().fold(h.len() as u64, |seed, h| seed.rotate_left(5) ^ h.to_bits()));
     let (mean, lowest) = (h.iter().sum::<f64>() / h.len() as f64, h.iter().copied().fold(f64::INFINITY, f64::min));
@@ -201,13 +206,13 @@ fn below_mean(h: &[f64], load: Load) -> Load {
     }
 }
 
-/// Random effects that are solved together with adhesion.
+/// Random effects that the library can solve together with adhesion.
 fn effects(random: &mut Random, grid: &Grid, bodies: ([f64; 2], [f64; 2])) -> Effects {
     let mut effects = Effects::default();
-    let own = free(1, 1, grid.dx, grid.dy, compliance(bodies.0, bodies.1)).at(0, 0);
+    let self_influence = free(1, 1, grid.dx, grid.dy, compliance(bodies.0, bodies.1)).at(0, 0);
     match random.integer(0, 11) {
         0 => {
-            let size = own * random.decades(1e-2, 1.0);
+            let size = self_influence * random.decades(1e-2, 1.0);
             effects.layer = Some(match random.chance(0.5) {
                 true => Values::Uniform(size),
                 false => Values::PerElement((0..grid.len()).map(|_| size * random.uniform()).collect()),
@@ -226,7 +231,8 @@ fn effects(random: &mut Random, grid: &Grid, bodies: ([f64; 2], [f64; 2])) -> Ef
     effects
 }
 
-/// Whether friction may be added. With coated bodies it requires equal coatings, which are rare here.
+/// Whether the library can solve friction with these effects. With coated bodies it requires equal coatings, which are rare here, so they are left
+/// out.
 fn friction_goes(effects: &Effects) -> bool {
     effects.period.is_none() && effects.patches.is_none() && effects.coating.is_none()
 }

@@ -1,4 +1,4 @@
-//! Batches: each problem is certified and has the bits of a single call, and a refused one does not affect the others.
+//! Batches of problems in one call. Each result is checked and must have the bits of a single call. A refused problem must not affect the others.
 
 use crate::call::{self, Handle};
 use crate::case::{Case, How};
@@ -6,10 +6,10 @@ use crate::random::Random;
 use crate::rules::check;
 use crate::verdict::Verdict;
 
-/// Solves a case and some similar ones in one call; now and then one of them is invalid.
+/// Solves a case and one to four similar ones in one call. Sometimes one of them is invalid.
 pub fn run(case: &Case, random: &mut Random) -> Verdict {
     let mut first = case.clone();
-    // The options that all problems of a batch share.
+    // All problems of a batch share these options.
     first.how = How {
         threads: 1 + i32::from(random.chance(0.3)),
         given: None,

@@ -1,5 +1,5 @@
-//! Random bytes become a scene, options, guesses and a table of coefficients, and the call must keep the promises of the ABI.
-//! campaign/tests/random_bytes.rs and the cargo-fuzz targets in fuzz/ call this.
+//! Turns random bytes into a scene, options, guesses and a table of coefficients, makes the call, and checks the promises of the ABI.
+//! campaign/tests/random_bytes.rs and the cargo-fuzz targets in fuzz/ use these functions.
 
 use std::ptr::null_mut;
 
@@ -9,7 +9,7 @@ use contact_normal::ffi::*;
 use crate::bytes_call::Call;
 use crate::bytes_reader::{Bytes, Target};
 
-/// A scene and options from bytes, through the plain call and through a handle. Returns the statuses, as the functions below do.
+/// Solves a scene with options from bytes, by one call or by a handle. Returns the statuses of the calls, as the functions below do.
 pub fn scene_and_options(data: &[u8]) -> Vec<i32> {
     solve(data, Target::Scene)
 }
@@ -24,7 +24,7 @@ pub fn friction(data: &[u8]) -> Vec<i32> {
     solve(data, Target::Friction)
 }
 
-/// Bytes of a dump's file, which is read and, if the call is short, replayed.
+/// Reads bytes as the file of a dump. If its call is short, makes the call again.
 pub fn dump(data: &[u8]) -> Vec<i32> {
     let Ok(dump) = Dump::read(data) else { return Vec::new() };
     let is_short = dump.options().is_some_and(|options| (0..=8).contains(&options.max_cycles))
@@ -35,6 +35,7 @@ pub fn dump(data: &[u8]) -> Vec<i32> {
     dump.replay().map_or_else(|_| Vec::new(), |again| vec![again.status])
 }
 
+/// Makes the calls of one target and checks their results.
 fn solve(data: &[u8], target: Target) -> Vec<i32> {
     let mut bytes = Bytes::new(data);
     let through_handle = bytes.byte() % 2 == 1;
@@ -44,7 +45,7 @@ fn solve(data: &[u8], target: Target) -> Vec<i32> {
     }
     let call = &mut *call;
     let before = call.outputs();
-    // SAFETY: structs with the arrays that they declare.
+    // SAFETY: all structs have the arrays that they declare.
     unsafe {
         if !through_handle {
             let fixed = call.contact.clone();

@@ -1,4 +1,4 @@
-//! A call whose scene, options, guesses and effects are made from bytes, and the checks after it.
+//! A call of the library whose scene, options, guesses and effects are made from random bytes, and the checks of its result.
 
 use std::ffi::CStr;
 use std::ptr::null;
@@ -10,25 +10,31 @@ use crate::bytes_reader::{Bytes, Target, ROOM, SENTINEL, SENTINEL_CONTACT};
 use crate::call::Outputs;
 use crate::case::{Case, How};
 use crate::effect_structs::{effect_structs, EffectStructs};
-use crate::effects::{Effects, OwnCoefficients, Patches, Values};
+use crate::effects::{Effects, Patches, UserCoefficients, Values};
 use crate::friction_place::{Place, Stop};
 use crate::grid::{Grid, Load};
 use crate::init::initialised;
 use crate::rules::is_true;
 
-/// All inputs and outputs of a call.
+/// All inputs and outputs of a call. Arrays have room for [`ROOM`] elements.
 pub struct Call {
+    /// Undeformed distances.
     h: Vec<f64>,
+    /// A table of influence coefficients.
     table: Vec<f64>,
     pressure: Vec<f64>,
     pub contact: Vec<i32>,
     displacement: Vec<f64>,
     pub scene: contact_normal_scene,
+    /// The struct of `table`.
     influence: contact_normal_influence,
-    /// The other effects, to which the scene points.
+    /// The other effects.
     effects: Effects,
+    /// The structs of these effects, to which the scene points.
     structs: Box<EffectStructs>,
+    /// Deformed distances.
     distance: Vec<f64>,
+    /// Friction, if the scene has it.
     sliding: Option<Box<Sliding>>,
     cycle: Box<contact_normal_cycle>,
     pub options: contact_normal_options,
@@ -37,6 +43,7 @@ pub struct Call {
 }
 
 impl Call {
+    /// Makes the inputs of a call from bytes.
     pub fn new(bytes: &mut Bytes<'_>, target: Target) -> Box<Call> {
         let mut call = Box::new(Call {
             h: Vec::new(),
@@ -80,12 +87,13 @@ impl Call {
         }
         for size in [&mut call.scene.struct_size, &mut call.options.struct_size, &mut call.fields.struct_size] {
             if bytes.byte() == 99 {
-                // A larger size would be read beyond the end of the struct, which is an error of the caller.
+                // The size becomes a smaller one. With a larger one the library would read beyond the end of the struct, which is an error of the
+                // caller.
                 *size = (*size).min(bytes.word() as i64);
             }
         }
         call.set_effects(bytes);
-        // After the effects, whose sizes are cut for the same reason.
+        // Friction comes after the effects. It cuts the sizes of its structs for the same reason.
         if target == Target::Friction || bytes.byte() % 2 == 1 {
             let mut sliding = Box::new(Sliding::new(bytes, n, &mut call.scene));
             sliding.point_from(&mut call.fields);
@@ -95,6 +103,7 @@ impl Call {
         call
     }
 
+    /// Makes the options of the solve from bytes.
     fn set_options(&mut self, bytes: &mut Bytes<'_>) {
         let options = &mut self.options;
         let cycle = &mut self.cycle;
@@ -107,7 +116,7 @@ impl Call {
         options.tolerance = bytes.sometimes(1e-6);
         (options.criterion, options.precision) = (bytes.integer(2), bytes.integer(3));
         options.error_ratio = bytes.sometimes(0.0);
-        // The limit is small, so that a run is short. Values out of range are tested in tests/abi/bad_input.rs.
+        // Few cycles, so that a solve is short. Other tests have values out of range (tests/abi/bad_input.rs).
         options.max_cycles = bytes.integer(200).min(200);
         options.threads = 1;
     }
@@ -118,13 +127,13 @@ impl Call {
         mx > 0 && my > 0 && mx * my <= ROOM as i64
     }
 
-    /// Whether the call may be made: the grid is refused by its sizes, or the arrays have room.
+    /// Whether the call may be made: the arrays have room for the grid, or the library refuses the grid before it reads them.
     pub fn may_be_tried(&self) -> bool {
         let (mx, my) = (i64::from(self.scene.mx), i64::from(self.scene.my));
         self.has_room() || mx <= 0 || my <= 0 || mx * my > i64::from(i32::MAX)
     }
 
-    /// Coefficients of the half-space, some of which become any number.
+    /// Adds a table with the coefficients of the half-space, some of which are replaced by arbitrary numbers.
     fn set_table(&mut self, bytes: &mut Bytes<'_>) {
         let (cx, cy) = (self.scene.mx.clamp(1, 16), self.scene.my.clamp(1, 16));
         self.table = vec![0.0; (4 * cx * cy) as usize];
@@ -143,51 +152,52 @@ impl Call {
         self.scene.influence = &raw const self.influence;
     }
 
-    /// The other effects: none, one or two of them, with usual values or any. They are read last, so that older, shorter bytes name none.
+    /// Adds the other effects that the bits of a byte select, with usual or arbitrary values. This byte is read after those of the scene, so that the
+    /// older, shorter strings of bytes of the corpus have no such effects.
     fn set_effects(&mut self, bytes: &mut Bytes<'_>) {
-        let named = bytes.byte();
+        let selected = bytes.byte();
         let n = self.h.len();
         let values = |bytes: &mut Bytes<'_>, usual: f64| match bytes.byte() % 2 {
             0 => Values::Uniform(bytes.sometimes(usual)),
             _ => Values::PerElement((0..n).map(|_| bytes.sometimes(usual)).collect()),
         };
-        if named & 1 != 0 {
+        if selected & 1 != 0 {
             self.effects.layer = Some(values(bytes, 0.3));
         }
-        if named & 2 != 0 {
+        if selected & 2 != 0 {
             self.effects.limit = Some(values(bytes, 0.2));
         }
-        if named & 12 == 4 {
+        if selected & 12 == 4 {
             let count = 1 + usize::from(bytes.byte() % 3);
             let patch = (0..n).map(|_| bytes.integer(count as u8)).collect();
             let mut factors: Vec<f64> = (0..count * count).map(|_| bytes.sometimes(0.5)).collect();
             (0..count).for_each(|a| factors[a * count + a] = bytes.sometimes(1.0));
             self.effects.patches = Some(Patches { count, patch, factors });
         }
-        if named & 48 == 16 && self.has_room() {
+        if selected & 48 == 16 && self.has_room() {
             self.set_row_tables(bytes);
         }
         self.structs = effect_structs(&self.effects);
         let scene = &mut self.scene;
         self.structs.point_from(scene, &self.effects);
-        if named & 192 == 64 {
+        if selected & 192 == 64 {
             (self.structs.period.x, self.structs.period.y) = (bytes.integer(2), bytes.integer(2));
             self.effects.period = Some((self.structs.period.x != 0, self.structs.period.y != 0));
             scene.period = &raw const self.structs.period;
-            // The number of waves of the oracle grows with the slenderness. (Slender periods: tests/problems/coefficients.rs.)
-            let slender = scene.dx / scene.dy;
-            if slender.is_finite() && !(1e-2..1e2).contains(&slender) {
+            // For slender elements the campaign needs many waves. (tests/problems/coefficients.rs has slender elements with periods.)
+            let ratio = scene.dx / scene.dy;
+            if ratio.is_finite() && !(1e-2..1e2).contains(&ratio) {
                 scene.dy = scene.dx;
             }
         }
         if self.influence.cx > 0 {
             let (cx, cy) = (self.influence.cx as usize, self.influence.cy as usize);
-            self.effects.influence = Some(OwnCoefficients { cx, cy, values: self.table.clone() });
+            self.effects.influence = Some(UserCoefficients { cx, cy, values: self.table.clone() });
             scene.influence = &raw const self.influence;
         }
     }
 
-    /// Rows of the half-space's coefficients, some of which become any number.
+    /// Adds row tables with the coefficients of the half-space, some of which are replaced by arbitrary numbers.
     fn set_row_tables(&mut self, bytes: &mut Bytes<'_>) {
         let (cx, my) = (self.scene.mx as usize, self.scene.my as usize);
         let quadrant = crate::half_space::free(cx + 1, my, 0.5, 0.25, 0.2);
@@ -197,7 +207,7 @@ impl Call {
             let at = bytes.word() as usize % values.len();
             values[at] = bytes.number();
         }
-        self.effects.row_tables = Some(OwnCoefficients { cx, cy: my, values });
+        self.effects.row_tables = Some(UserCoefficients { cx, cy: my, values });
     }
 
     /// All outputs of a call, as bits.
@@ -208,7 +218,7 @@ impl Call {
         numbers.chain(self.contact.iter().map(|&c| c as u64)).chain(report).chain(sliding).collect()
     }
 
-    /// The checks after a call.
+    /// Checks the result of a call. `before` has the outputs before it, and `fixed` the contact area that was given.
     pub fn check(&self, status: i32, before: &[u64], fixed: &[i32]) {
         // SAFETY: never NULL, valid until the next call.
         let message = unsafe { CStr::from_ptr(contact_normal_last_error()) }.to_str().expect("UTF-8");
@@ -223,7 +233,7 @@ impl Call {
         let (case, mut found) = (self.case(fixed), self.found(status));
         if let Some(fixed) = &case.how.fixed {
             assert!(found.contact == *fixed, "a fixed area was written");
-            // With any code other than 0 an element with a surface is in contact.
+            // An element with any code other than 0 is in contact, unless it is excluded (h infinite).
             let in_contact = fixed.iter().zip(&case.h).map(|(code, h)| i32::from(*code != 0 && h.is_finite()));
             found.contact = in_contact.collect();
         }
@@ -234,7 +244,7 @@ impl Call {
         };
         let Case { grid, shear_modulus, poisson_ratio, h, load, .. } = case.clone();
         let place = Place { surface: "bytes".into(), h, load, ..Place::new(grid, shear_modulus, poisson_ratio) };
-        // For unlike bodies the oracle of the normal problem lacks the displacements by tractions.
+        // For unlike bodies tractions cause normal displacements, which the check of the normal problem does not have.
         if place.is_alike() {
             let failures = is_true(&case, &found);
             assert!(failures.is_empty(), "friction, status {status}: {failures:?}");
@@ -245,11 +255,11 @@ impl Call {
         assert!(failures.is_empty(), "friction, status {status}: {failures:?}");
     }
 
-    /// The scene that was accepted.
+    /// The scene and options of the call as a case, for the checks. The library has accepted them.
     fn case(&self, fixed: &[i32]) -> Case {
         let (scene, options) = (&self.scene, &self.options);
         let grid = Grid { mx: scene.mx as usize, my: scene.my as usize, dx: scene.dx, dy: scene.dy };
-        // Approach or force is always read. Without a `load` the other is NaN.
+        // The library reads either the approach or the force. If `load` is not set, the one that is NaN is not read.
         let by_approach = match scene.load {
             CONTACT_NORMAL_PRESCRIBED_UNSET => scene.force.is_nan(),
             load => load == CONTACT_NORMAL_PRESCRIBED_APPROACH,
@@ -259,7 +269,7 @@ impl Call {
         let how = How {
             method: options.method,
             smoother: self.cycle.smoother,
-            // If an error ratio ends the solve instead of the tolerance, the residual is judged as for updates: by 1e-2.
+            // If an error ratio ends the solve instead of the tolerance, the residual must be below 1e-2, as with the criterion UPDATE.
             criterion: if options.error_ratio > 0.0 { CONTACT_NORMAL_CRITERION_UPDATE } else { options.criterion },
             tolerance: options.tolerance,
             precision: options.precision,

@@ -1,4 +1,4 @@
-//! Friction from random bytes: every motion, forces, own tables, previous tractions, like and unlike bodies; and the checks of a result.
+//! Makes friction from random bytes: all motions, forces, the caller's tables, previous tractions, like and unlike bodies. Also checks the results.
 
 use std::ptr::null;
 
@@ -14,18 +14,22 @@ use crate::grid::Grid;
 use crate::init::initialised;
 use crate::slide::Slide;
 
-/// A pair of arrays, one for x and one for y.
+/// The components x and y of a field of vectors.
 type Pair = [Vec<f64>; 2];
 
-/// The inputs and outputs of a call with friction, other than those of the normal problem.
+/// The inputs and outputs of a call with friction, except those of the normal problem. Arrays have room for [`ROOM`] elements.
 pub struct Sliding {
+    /// The friction coefficients of the elements; empty: there is one for all.
     mu: Vec<f64>,
+    /// The tractions before the step.
     previous: Option<Pair>,
+    /// The rigid slip of each element.
     rigid: Option<Pair>,
     /// The tables xx, yy, xy, xz, yz.
     tables: Vec<Vec<f64>>,
-    own: Vec<contact_normal_influence>,
-    /// Whether the oracle has the coefficients and the slip of the call.
+    /// The structs of these tables.
+    structs: Vec<contact_normal_influence>,
+    /// Whether the campaign can check the result: it has the coefficients and the slip of the call.
     certified: bool,
     pub input: contact_normal_friction,
     traction: Pair,
@@ -33,7 +37,7 @@ pub struct Sliding {
     stick_slip: Vec<i32>,
 }
 
-/// Numbers for a grid of n elements, some of which may be any number.
+/// Numbers of about this size for a grid of n elements. Some may be arbitrary.
 fn numbers(bytes: &mut Bytes<'_>, n: usize, size: f64) -> Vec<f64> {
     let usual = |bytes: &mut Bytes<'_>| size * (f64::from(bytes.byte()) / 128.0 - 1.0);
     let mut values: Vec<f64> = (0..ROOM).map(|i| if i < n { usual(bytes) } else { 0.0 }).collect();
@@ -43,32 +47,33 @@ fn numbers(bytes: &mut Bytes<'_>, n: usize, size: f64) -> Vec<f64> {
     values
 }
 
-fn pair(bytes: &mut Bytes<'_>, n: usize, named: bool) -> Option<Pair> {
-    named.then(|| {
+/// A field of vectors, if it is selected.
+fn pair(bytes: &mut Bytes<'_>, n: usize, is_selected: bool) -> Option<Pair> {
+    is_selected.then(|| {
         let size = [0.01, 1.0, 1e6, 1e-9][usize::from(bytes.byte() % 4)];
         [numbers(bytes, n, size), numbers(bytes, n, size)]
     })
 }
 
-/// A table as a struct of friction.
-fn own_table((cx, cy): (i32, i32), coefficients: &[f64], scale: f64) -> contact_normal_influence {
+/// The struct of the C ABI for a table.
+fn influence_struct((cx, cy): (i32, i32), coefficients: &[f64], scale: f64) -> contact_normal_influence {
     contact_normal_influence { cx, cy, coefficients: coefficients.as_ptr(), scale, ..Default::default() }
 }
 
 impl Sliding {
-    /// Friction for the scene's grid of n elements. In most cases `scene` gets like bodies.
+    /// Makes friction for a scene with n elements. In most cases the bodies of the scene become alike.
     pub fn new(bytes: &mut Bytes<'_>, n: usize, scene: &mut contact_normal_scene) -> Sliding {
         if bytes.byte() % 4 != 0 {
             scene.shear_modulus[1] = scene.shear_modulus[0];
             scene.poisson_ratio[1] = scene.poisson_ratio[0];
         }
-        let named = bytes.byte();
+        let selected = bytes.byte();
         let mut sliding = Sliding {
-            mu: if named & 1 != 0 { numbers(bytes, n, 0.5).into_iter().map(f64::abs).collect() } else { Vec::new() },
-            previous: pair(bytes, n, named & 6 == 2),
-            rigid: pair(bytes, n, named & 24 == 8),
+            mu: if selected & 1 != 0 { numbers(bytes, n, 0.5).into_iter().map(f64::abs).collect() } else { Vec::new() },
+            previous: pair(bytes, n, selected & 6 == 2),
+            rigid: pair(bytes, n, selected & 24 == 8),
             tables: Vec::new(),
-            own: Vec::new(),
+            structs: Vec::new(),
             certified: true,
             input: initialised(contact_normal_friction_init),
             traction: [0, 1].map(|_| vec![SENTINEL; ROOM]),
@@ -76,12 +81,12 @@ impl Sliding {
             stick_slip: vec![SENTINEL_CONTACT; ROOM],
         };
         sliding.set_motion(bytes);
-        if named & 96 == 32 && n > 0 {
+        if selected & 96 == 32 && n > 0 {
             sliding.set_tables(bytes, scene);
         }
         let pointers = |pair: &Option<Pair>| pair.as_ref().map_or([null(); 2], |[x, y]| [x.as_ptr(), y.as_ptr()]);
         let input = &mut sliding.input;
-        if named & 1 != 0 {
+        if selected & 1 != 0 {
             input.coefficients = sliding.mu.as_ptr();
         }
         (input.previous_traction, input.rigid_slip) = (pointers(&sliding.previous), pointers(&sliding.rigid));
@@ -96,6 +101,7 @@ impl Sliding {
         sliding
     }
 
+    /// Makes the motion from bytes.
     fn set_motion(&mut self, bytes: &mut Bytes<'_>) {
         let input = &mut self.input;
         input.coefficient = bytes.sometimes(0.3);
@@ -117,12 +123,12 @@ impl Sliding {
         input.continues = i32::from(bytes.byte() % 8 == 0);
         input.sensitivities = i32::from(bytes.byte() % 8 == 0);
         input.reserved = i32::from(bytes.byte() == 99);
-        // The oracle has the slip of the default offset, and does not keep the tractions of a handle.
+        // The campaign computes the slip with the default offset, and does not have the tractions that a handle holds.
         let default: contact_normal_friction = initialised(contact_normal_friction_init);
         self.certified = input.spin_offset.to_bits() == default.spin_offset.to_bits() && input.continues == 0;
     }
 
-    /// The tables of the half-space, some entries of which become any number.
+    /// Adds tables with the coefficients of the half-space. Some entries may be replaced by arbitrary numbers.
     fn set_tables(&mut self, bytes: &mut Bytes<'_>, scene: &contact_normal_scene) {
         let (cx, cy) = (scene.mx + 1 + bytes.integer(2).clamp(0, 2), scene.my + 1);
         let grid = Grid { mx: cx as usize, my: cy as usize, dx: scene.dx, dy: scene.dy };
@@ -137,13 +143,13 @@ impl Sliding {
         let scale = bytes.sometimes(1.0);
         self.certified &= scale.to_bits() == 1.0f64.to_bits();
         if bytes.byte() % 8 == 0 {
-            // The tables of the coupling of unlike bodies: here 0.
+            // The tables xz and yz, which couple unlike bodies, are 0 here.
             self.tables.extend([vec![0.0; self.tables[0].len()], vec![0.0; self.tables[0].len()]]);
         }
-        self.own = self.tables.iter().map(|table| own_table((cx, cy), table, scale)).collect();
-        input.influence = [0, 1, 2].map(|k: usize| &raw const self.own[k]);
-        if self.own.len() > 3 {
-            input.influence_cross = [3, 4].map(|k: usize| &raw const self.own[k]);
+        self.structs = self.tables.iter().map(|table| influence_struct((cx, cy), table, scale)).collect();
+        input.influence = [0, 1, 2].map(|k: usize| &raw const self.structs[k]);
+        if self.structs.len() > 3 {
+            input.influence_cross = [3, 4].map(|k: usize| &raw const self.structs[k]);
         }
     }
 
@@ -160,16 +166,15 @@ impl Sliding {
         numbers.chain(self.stick_slip.iter().map(|&a| a as u64))
     }
 
-    /// The violated conditions of a result; place, pressures and displacements are those of the call.
+    /// The broken promises of a result, whose normal part is the place, the status, the pressures, the displacements and the report.
     pub fn failures(
         &self,
         place: Place,
         stop: Stop,
-        found: (i32, &[f64], &[f64], contact_normal_report),
+        (status, p, u, report): (i32, &[f64], &[f64], contact_normal_report),
     ) -> Vec<String> {
         let (n, input) = (place.grid.len(), &self.input);
-        let (status, p, u, report) = found;
-        let beyond = self.outputs_beyond(n);
+        let writes_beyond = self.writes_beyond(n);
         let has_force = |k: usize| input.prescribed[k] == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE;
         let slide = Slide {
             mu: if self.mu.is_empty() { vec![input.coefficient; n] } else { self.mu[..n].to_vec() },
@@ -201,17 +206,19 @@ impl Sliding {
             written: true,
         };
         let case = Case { place, slide, stop, carried: 0.0 };
-        // Own tables have no coupling of unlike bodies; a fixed area may be in tension.
+        // For unlike bodies the campaign does not check results with the caller's tables, which do not couple, or with negative pressures on a fixed
+        // area.
         let couples = !case.place.is_alike();
         let certified = self.certified && !(couples && (!self.tables.is_empty() || p.iter().any(|p| *p < 0.0)));
         let verdict = answer(&case, &found, certified);
         let mut texts: Vec<String> =
             verdict.failures.into_iter().map(|f| format!("{}: {}", f.promise, f.details)).collect();
-        texts.extend(beyond.then(|| "friction writes beyond the grid".to_string()));
+        texts.extend(writes_beyond.then(|| "friction writes beyond the grid".to_string()));
         texts
     }
 
-    fn outputs_beyond(&self, n: usize) -> bool {
+    /// Whether the call wrote to outputs beyond the n elements of the grid.
+    fn writes_beyond(&self, n: usize) -> bool {
         let beyond =
             self.traction.iter().chain(&self.slip).any(|a| a[n..].iter().any(|v| v.to_bits() != SENTINEL.to_bits()));
         beyond || self.stick_slip[n..].iter().any(|&a| a != SENTINEL_CONTACT)

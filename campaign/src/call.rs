@@ -1,4 +1,4 @@
-//! Calls of the C ABI.
+//! Calls of the C ABI for scenes without friction and adhesion.
 
 use std::ffi::{c_void, CStr};
 use std::ptr::null_mut;
@@ -7,22 +7,23 @@ use contact_normal::ffi::*;
 
 use crate::case::{Case, How};
 use crate::effect_structs::{effect_structs, EffectStructs};
-use crate::effects::OwnCoefficients;
+use crate::effects::UserCoefficients;
 use crate::grid::{Grid, Load};
 use crate::init::initialised;
 
-/// The value of outputs before a call.
+/// The value of outputs of type double before a call.
 pub const SENTINEL: f64 = -12345.678;
+/// The value of integer outputs before a call.
 const SENTINEL_CONTACT: i32 = -77;
 
-/// A scene whose effects point into a case.
+/// A scene that points to the arrays of a case.
 struct Scene {
     scene: contact_normal_scene,
-    // Boxed: the scene points to them.
+    // The scene points to these structs. They are boxed, so that their address stays the same.
     _effects: Box<EffectStructs>,
 }
 
-/// Bodies with these shear moduli and Poisson ratios, and a load, without effects.
+/// A scene without effects, of bodies with these shear moduli and Poisson ratios.
 pub fn bare_scene(grid: &Grid, h: &[f64], (moduli, ratios): ([f64; 2], [f64; 2]), load: Load) -> contact_normal_scene {
     let mut scene = initialised(contact_normal_scene_init);
     (scene.mx, scene.my) = (grid.mx as i32, grid.my as i32);
@@ -37,6 +38,7 @@ pub fn bare_scene(grid: &Grid, h: &[f64], (moduli, ratios): ([f64; 2], [f64; 2])
 }
 
 impl Scene {
+    /// The scene of a case.
     fn of(case: &Case) -> Scene {
         let structs = effect_structs(&case.effects);
         let mut scene = bare_scene(&case.grid, &case.h, (case.shear_modulus, case.poisson_ratio), case.load);
@@ -45,21 +47,22 @@ impl Scene {
     }
 }
 
-/// Cancels once, at a given call of the callback.
+/// The state of a callback that cancels a solve once.
 pub struct Canceller {
+    /// The number of calls of the callback so far.
     pub calls: u32,
-    /// The number of this call; 0: never.
+    /// The number of the call that cancels; 0: none.
     pub at: u32,
 }
 
 impl Canceller {
-    /// The number of calls after the cancelling one, if one cancelled: it must be 0.
+    /// The number of calls after the one that cancelled. It must be 0. None if no call cancelled.
     pub fn overrun(&self) -> Option<u32> {
         (self.at > 0).then(|| self.calls.checked_sub(self.at)).flatten()
     }
 }
 
-/// Counts its calls, and cancels.
+/// The callback: counts its calls, and cancels at one of them.
 ///
 /// # Safety
 ///
@@ -71,11 +74,13 @@ pub unsafe extern "C" fn cancel(_progress: *const contact_normal_progress, user:
     i32::from(canceller.calls == canceller.at)
 }
 
+/// The options of multigrid cycles.
 fn cycle(how: &How) -> contact_normal_cycle {
     contact_normal_cycle { smoother: how.smoother, coarsest: how.coarsest, ..Default::default() }
 }
 
-/// `cycle` and `canceller` must live as long as the options.
+/// The options of a solve. If `previous` is true, it starts from the last result of the handle. The options point to `cycle` and `canceller`, which
+/// must live as long.
 fn options(
     how: &How,
     previous: bool,
@@ -104,9 +109,13 @@ fn options(
 pub struct Outputs {
     pub status: i32,
     pub message: String,
+    /// Pressures.
     pub p: Vec<f64>,
+    /// Displacements.
     pub u: Vec<f64>,
+    /// Deformed distances.
     pub e: Vec<f64>,
+    /// 0: exterior, 1: in contact, 2: at a pressure limit.
     pub contact: Vec<i32>,
     pub report: contact_normal_report,
     /// The number of callbacks after the one that cancelled, if one did.
@@ -116,7 +125,7 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// The bits that must be equal for equal calls.
+    /// The bits of the results, which must be the same for equal calls.
     pub fn bits(&self) -> Vec<u64> {
         let numbers = self.p.iter().chain(&self.u).chain(&self.e).map(|value| value.to_bits());
         let counts = [self.report.normal.approach.to_bits(), self.report.statistics.cycles as u64, self.status as u64];
@@ -124,12 +133,12 @@ impl Outputs {
     }
 }
 
-/// Arrays filled with sentinels, and the inputs among them.
+/// The arrays of a call before it: outputs are filled with sentinels; a guess or a fixed contact area are inputs.
 fn outputs(case: &Case) -> (Outputs, contact_normal_fields) {
     let n = case.grid.len();
     let given = case.how.given.clone();
     let fixed = case.how.fixed.clone();
-    // With a guess the contact area is read as well.
+    // With a guess the library reads the contact area as well.
     let of_guess = |p: &Vec<f64>| p.iter().map(|&p| i32::from(p > 0.0)).collect();
     let contact = fixed.or_else(|| given.as_ref().map(of_guess)).unwrap_or_else(|| vec![SENTINEL_CONTACT; n]);
     let mut outputs = Outputs {
@@ -167,7 +176,7 @@ pub fn last_error() -> String {
 }
 
 impl Handle {
-    /// A handle for a case, or the status and the message.
+    /// Makes a handle for a case. If the library refuses it, returns the status and the message.
     pub fn new(case: &Case) -> Result<Handle, (i32, String)> {
         let mut canceller = Canceller { calls: 0, at: 0 };
         let cycle = cycle(&case.how);
@@ -181,7 +190,7 @@ impl Handle {
         }
     }
 
-    /// Solves a case with this handle.
+    /// Solves a case with this handle. If `previous` is true, the solve starts from the last result.
     pub fn solve(&mut self, case: &Case, previous: bool) -> Outputs {
         run(case, previous, |scene, options, fields, report| {
             // SAFETY: structs with the arrays that they declare, and a handle that no one else uses.
@@ -189,7 +198,7 @@ impl Handle {
         })
     }
 
-    /// The product A p.
+    /// Computes the product A p with the handle's coefficients.
     pub fn product(&mut self, p: &[f64]) -> Vec<f64> {
         let mut u = vec![SENTINEL; p.len()];
         // SAFETY: as many values as the grid has elements.
@@ -198,15 +207,16 @@ impl Handle {
         u
     }
 
-    /// Sets other coefficients; returns the status.
-    pub fn set_influence(&mut self, own: &OwnCoefficients) -> i32 {
+    /// Sets another table of coefficients. Returns the status.
+    pub fn set_influence(&mut self, table: &UserCoefficients) -> i32 {
         let mut influence = initialised(contact_normal_influence_init);
-        (influence.cx, influence.cy, influence.coefficients) = (own.cx as i32, own.cy as i32, own.values.as_ptr());
+        (influence.cx, influence.cy, influence.coefficients) =
+            (table.cx as i32, table.cy as i32, table.values.as_ptr());
         // SAFETY: a struct with a table of the size that it says.
         unsafe { contact_normal_solver_set_influence(self.0, &influence, std::ptr::null()) }
     }
 
-    /// Solves cases that differ in surface and load only, in one call; returns its status and the results.
+    /// Solves cases that differ in surface and load only, in one call. Returns its status and the results.
     pub fn solve_batch(&mut self, cases: &[Case]) -> (i32, Vec<Outputs>) {
         let mut canceller = Canceller { calls: 0, at: 0 };
         let cycle = cycle(&cases[0].how);
@@ -241,7 +251,7 @@ impl Handle {
         (status, outputs)
     }
 
-    /// The pressures that the handle holds, or None.
+    /// The pressures of the handle's last result. None if it has none.
     pub fn pressures(&self, n: usize) -> Option<Vec<f64>> {
         let mut p = vec![SENTINEL; n];
         let mut fields = initialised(contact_normal_fields_init);
@@ -252,7 +262,7 @@ impl Handle {
     }
 }
 
-/// A step of viscoelastic bodies, on a handle that the first step makes.
+/// Solves a step of viscoelastic bodies with a handle. The first step makes the handle.
 pub fn step(handle: &mut Option<Handle>, case: &Case, visco: &contact_normal_visco) -> Outputs {
     run(case, false, |scene, options, fields, report| {
         // SAFETY (all): structs with the arrays that they declare, and a handle that no one else uses.
@@ -280,6 +290,7 @@ pub fn solve(case: &Case) -> Outputs {
     })
 }
 
+/// Makes one call for a case, with outputs filled with sentinels.
 fn run(
     case: &Case,
     previous: bool,

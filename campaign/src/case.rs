@@ -1,4 +1,4 @@
-//! One case, made from a seed: a scene with its effects, and the options of its solve.
+//! A random case: a scene with its effects, and the options of its solve. A seed determines it.
 
 use contact_normal::ffi::*;
 
@@ -22,15 +22,15 @@ pub struct How {
     pub threads: i32,
     pub coarsest: i32,
     pub max_cycles: i32,
-    /// The call of the callback that cancels.
+    /// The number of the callback's call that cancels the solve; None: never.
     pub cancel_at: Option<u32>,
     /// The contact area, if it is fixed.
     pub fixed: Option<Vec<i32>>,
-    /// Pressures to start from.
+    /// The initial guess of the pressures.
     pub given: Option<Vec<f64>>,
 }
 
-/// A name and undeformed distances of size about 1.
+/// A function that makes a random surface: its name, and undeformed distances of size about 1.
 pub type Surfaces = fn(&mut Random, &Grid) -> (String, Vec<f64>);
 
 /// A scene, and the options of its solve.
@@ -40,16 +40,18 @@ pub struct Case {
     pub grid: Grid,
     pub shear_modulus: [f64; 2],
     pub poisson_ratio: [f64; 2],
+    /// The name of the surface.
     pub surface: String,
     /// The function that makes other surfaces of this kind.
     pub surfaces: Surfaces,
+    /// Undeformed distances.
     pub h: Vec<f64>,
     /// A bound on the round-off of h.
     pub h_rounding: f64,
     pub load: Load,
     pub effects: Effects,
     pub how: How,
-    /// Solved through a handle, by a sequence of calls.
+    /// Whether the case is solved by a sequence of calls of a handle instead of one call.
     pub through_handle: bool,
     /// Whether the case is one of the module `measured`.
     pub is_measured: bool,
@@ -62,8 +64,8 @@ impl Case {
         let random = &mut random;
         let unit = if random.chance(0.3) { 10f64.powi(random.integer(0, 12) as i32 - 6) } else { 1.0 };
         let modulus = if random.chance(0.3) { 10f64.powi(random.integer(0, 20) as i32 - 8) } else { 1.0 };
-        let kinds = effects::kinds(random);
-        let grid = elements(random, kinds.period.is_some(), kinds.row_tables, unit);
+        let choice = effects::choose(random);
+        let grid = elements(random, choice.period.is_some(), choice.row_tables, unit);
         let shear_modulus =
             [modulus, if random.chance(0.3) { f64::INFINITY } else { modulus * random.decades(0.1, 10.0) }];
         let poisson_ratio = [random.between(-0.9, 0.5), 0.3];
@@ -72,19 +74,19 @@ impl Case {
         let offset = if random.chance(0.04) { 1e9 * unit } else { 0.0 };
         h.iter_mut().for_each(|h| *h = *h * height + offset);
         let c = compliance(shear_modulus, poisson_ratio);
-        let mut effects = effects::make(random, &kinds, &grid, c);
-        // By other random numbers, so that the other effects do not change.
-        let own = &mut Random::new(seed ^ 0xc0a7);
-        // The oracle by quadrature needs elements that are not slender.
-        if own.chance(0.12) && (0.1..=10.0).contains(&(grid.dx / grid.dy)) {
-            effects.coating = Some(coating::random(own, &grid, (shear_modulus, poisson_ratio), effects.period));
+        let mut effects = effects::make(random, &choice, &grid, c);
+        // A separate sequence of random numbers, so that the other effects of a seed stay the same.
+        let for_coating = &mut Random::new(seed ^ 0xc0a7);
+        // The quadrature of the campaign needs elements that are not slender.
+        if for_coating.chance(0.12) && (0.1..=10.0).contains(&(grid.dx / grid.dy)) {
+            effects.coating = Some(coating::random(for_coating, &grid, (shear_modulus, poisson_ratio), effects.period));
         }
         let scales = Scales::of(&h, &effects, &grid, c);
         let load = load(random, &scales, &grid);
-        if kinds.limit {
+        if choice.limit {
             effects.limit = Some(scales::limit(random, &scales, load, &h, &grid));
         }
-        let how = How::any(random, &scales, &h, load, kinds.limit);
+        let how = How::any(random, &scales, &h, load, choice.limit);
         let through_handle = random.chance(0.2);
         Case {
             seed,
@@ -119,7 +121,7 @@ impl Case {
         }
         let how = How::any(random, &scales, &next.h, next.load, self.effects.limit.is_some());
         let set_up = &self.how;
-        // The options of the set-up of a handle stay.
+        // These options belong to the set-up of a handle, so they stay.
         next.how = How {
             smoother: set_up.smoother,
             threads: set_up.threads,
@@ -130,7 +132,7 @@ impl Case {
         next
     }
 
-    /// A, with the campaign's own coefficients.
+    /// The matrix A, with the coefficients of the campaign.
     pub fn operator(&self) -> Operator<'_> {
         Operator::new(&self.grid, compliance(self.shear_modulus, self.poisson_ratio), &self.effects)
     }
@@ -165,7 +167,7 @@ impl Case {
     }
 }
 
-/// The grid.
+/// A random grid; `unit` is its unit of length.
 fn elements(random: &mut Random, periodic: bool, row_tables: bool, unit: f64) -> Grid {
     let (mx, my) = match random.uniform() {
         u if u < 0.03 => (1, 1),
@@ -177,7 +179,7 @@ fn elements(random: &mut Random, periodic: bool, row_tables: bool, unit: f64) ->
         _ => (random.integer(64, 112), random.integer(64, 112)),
     };
     let dx = unit * random.decades(0.1, 1.0);
-    // With a period, sums over the images of slender elements take long. Without one, round-off of the closed form allows 1e4.
+    // With a period, the sums over images take long for slender elements. Without one, the round-off of the closed form is acceptable up to 1e4.
     let slenderness: f64 = if periodic { 8.0 } else { 1e4 };
     let dy = match random.uniform() {
         u if u < 0.4 => dx,
@@ -187,7 +189,7 @@ fn elements(random: &mut Random, periodic: bool, row_tables: bool, unit: f64) ->
     Grid { mx, my, dx, dy }
 }
 
-/// A random load that suits the scales of the scene.
+/// A random approach or force, relative to the scales of the scene.
 pub fn load(random: &mut Random, scales: &Scales, grid: &Grid) -> Load {
     if random.chance(0.5) {
         let part = match random.uniform() {
@@ -204,6 +206,7 @@ pub fn load(random: &mut Random, scales: &Scales, grid: &Grid) -> Load {
 }
 
 impl How {
+    /// Random options. `limited`: the scene has a pressure limit, with which few cases have a fixed contact area.
     pub fn any(random: &mut Random, scales: &Scales, h: &[f64], load: Load, limited: bool) -> How {
         let method = if random.chance(0.5) { CONTACT_NORMAL_METHOD_AUTO } else { random.integer(1, 4) as i32 };
         let fixed = random.chance(if limited { 0.01 } else { 0.08 }).then(|| contact_area(random, scales, h, load));
@@ -223,13 +226,13 @@ impl How {
         }
     }
 
-    /// Whether the solve has the default number of cycles, and is not cancelled.
+    /// Whether the solve has 1000 cycles, and is not cancelled.
     pub fn is_unhindered(&self) -> bool {
         self.max_cycles == 1000 && self.cancel_at.is_none()
     }
 }
 
-/// A contact area of at least one element, all of them with a surface.
+/// A random contact area of at least one element. Excluded elements (h infinite) are not in it.
 fn contact_area(random: &mut Random, scales: &Scales, h: &[f64], load: Load) -> Vec<i32> {
     let level = match load {
         Load::Approach(approach) => approach,
@@ -244,7 +247,7 @@ fn contact_area(random: &mut Random, scales: &Scales, h: &[f64], load: Load) -> 
     contact
 }
 
-/// Pressures of every kind: none, noise, far too large, one element.
+/// A random initial guess: no pressures, noise, far too large pressures, pressures of both signs, or a pressure on one element.
 fn guess(random: &mut Random, scales: &Scales, n: usize) -> Vec<f64> {
     let kind = random.integer(0, 4);
     let only = random.integer(0, n - 1);

@@ -1,14 +1,16 @@
-//! Coatings: a bonded layer on a body, by its transfer function and a quadrature of its Hankel integral.
+//! Coatings: the influence coefficients of a bonded layer on a body, by a quadrature of the Hankel integral of its transfer function.
 //!
-//! A unit pressure on one element displaces the surface by this much more than that of a half-space of the layer's material:
+//! With a layer of thickness t, a unit pressure on one element displaces the surface more than that of a half-space of the layer's material, by
 //!
 //! ```text
 //! c (1/t) integral over the element of F(r/t),    F(rho) = integral over s > 0 of (B(s) - 1) J0(s rho),    c = (1 - nu1)/(2 pi G1)
 //! ```
 //!
-//! F is analytic in |Im rho| < 2. It is tabulated along the distance, and integrated over elements by Gauss's rule, on panels at most two thicknesses long
-//! beside the load. With two periods each wave k of a grid and its aliases has `2 pi c (B(k t) - 1)/k` times the means
-//! over elements, and the mean pressure P compresses the layer by `P t/M`, `M = 2 G1 (1 - nu1)/(1 - 2 nu1)`.
+//! F is analytic in |Im rho| < 2. It is tabulated along the distance, and integrated over elements by Gauss's rule. Near the load the panels of the
+//! rule are at most two thicknesses long.
+//!
+//! With two periods the additional displacement is a sum over the waves k of the grid and their aliases, with the factors `2 pi c (B(k t) - 1)/k`
+//! times the means of the wave over elements. The mean pressure P compresses the layer by `P t/M`, with `M = 2 G1 (1 - nu1)/(1 - 2 nu1)`.
 
 use std::f64::consts::PI;
 
@@ -17,7 +19,7 @@ use crate::half_space::{free, periodic, Quadrant};
 use crate::hankel::{transfer, Rules, Table};
 use crate::random::Random;
 
-/// Thickness, shear modulus and Poisson ratio of a layer.
+/// A bonded layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
     pub thickness: f64,
@@ -25,20 +27,22 @@ pub struct Layer {
     pub poisson_ratio: f64,
 }
 
-/// The layers of both bodies, and the bodies below.
+/// The layers of both bodies, and the materials of the bodies below.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coating {
     pub layers: [Option<Layer>; 2],
+    /// The shear moduli of the bodies below the layers.
     pub shear_modulus: [f64; 2],
+    /// The Poisson ratios of the bodies below the layers.
     pub poisson_ratio: [f64; 2],
 }
 
-/// The error of coefficients, relative to the largest one: that of the library for G1/G2 of 0.01 to 100, and as much of this module.
+/// The error of coefficients, relative to the largest one, for G1/G2 of 0.01 to 100: that of the library, and as much of this module.
 const ACCURACY: f64 = 2e-10;
-/// Above this G1/G2 the error of coefficients grows in proportion.
+/// Above this G1/G2 the error of coefficients grows in proportion to G1/G2.
 const STIFF: f64 = 100.0;
 
-/// Layers on one body or on both, of which one may be rigid; with two periods on small grids down to 1/16 of an element.
+/// Random layers on one body or on both; one body may be rigid. On small grids with two periods the thickness is down to 1/16 of an element.
 pub fn random(
     random: &mut Random,
     grid: &Grid,
@@ -55,7 +59,7 @@ pub fn random(
             true => longer * random.decades(0.0626, 50.0),
             false => f64::max(longer * random.decades(0.5, 50.0), 0.02 * size),
         };
-        // The library refuses layers on a rigid body that are thin and almost incompressible.
+        // The library refuses a layer on a rigid body that is thin and almost incompressible.
         let is_rigid = shear_modulus[b].is_infinite();
         let below = if is_rigid { shear_modulus[0] } else { shear_modulus[b] };
         let poisson_ratio = match equal {
@@ -74,10 +78,12 @@ pub fn random(
     Coating { layers, shear_modulus, poisson_ratio }
 }
 
-/// Most elements of a grid whose layers may be a twentieth of an element thick: their table along the distance is long.
+/// The largest number of elements of a grid whose layers may be as thin as a twentieth of an element. For such layers the table along the distance is
+/// long.
 const FEW: usize = 2500;
 
-/// The same layer on two equal bodies. Some layers are thin and stiff. Some bodies are rigid; then the layer has the material that the bodies had.
+/// The same random layer on two equal bodies. Some layers are thin and stiff. Sometimes the bodies become rigid, and the layer gets their shear
+/// modulus.
 pub fn on_both(random: &mut Random, grid: &Grid, (shear_modulus, poisson_ratio): (f64, f64)) -> Coating {
     let coating = self::random(random, grid, ([shear_modulus; 2], [poisson_ratio; 2]), None);
     let Some(mut layer) = coating.layers[0].or(coating.layers[1]) else { return coating };
@@ -94,7 +100,7 @@ pub fn on_both(random: &mut Random, grid: &Grid, (shear_modulus, poisson_ratio):
 }
 
 impl Coating {
-    /// `(c, thickness, G1/G2, [nu1, nu2])` of a body. Thickness 0: the body has no layer.
+    /// `(c, t, G1/G2, [nu1, nu2])` of a body, with the layer as 1 and the body below as 2. The thickness t is 0 if the body has no layer.
     pub fn surface(&self, b: usize) -> (f64, f64, f64, [f64; 2]) {
         let (g, nu) = (self.shear_modulus[b], self.poisson_ratio[b]);
         match self.layers[b].filter(|layer| layer.thickness > 0.0) {
@@ -106,23 +112,25 @@ impl Coating {
         }
     }
 
-    /// The compliance `1/E*` of both materials at the surface, divided by pi.
+    /// The compliance `c = 1/(pi E*)` of the materials at both surfaces.
     pub fn compliance(&self) -> f64 {
-        self.surface(0).0 + self.surface(1).0
+        let [(c1, ..), (c2, ..)] = [0, 1].map(|b| self.surface(b));
+        c1 + c2
     }
 
-    /// G and nu at the surfaces of both bodies, which are the same.
+    /// The shear moduli and Poisson ratios at the surfaces, for a coating that is the same on both bodies.
     pub fn at_surface(&self) -> ([f64; 2], [f64; 2]) {
-        let own = (self.shear_modulus, self.poisson_ratio);
+        let below = (self.shear_modulus, self.poisson_ratio);
         let layer = self.layers[0].filter(|layer| layer.thickness > 0.0);
-        layer.map_or(own, |layer| ([layer.shear_modulus; 2], [layer.poisson_ratio; 2]))
+        layer.map_or(below, |layer| ([layer.shear_modulus; 2], [layer.poisson_ratio; 2]))
     }
 
-    /// The coefficients of both bodies; with one period those of half-spaces of the materials at the surface.
+    /// The coefficients of both bodies together. With one period they are those of half-spaces of the materials at the surfaces: the library refuses
+    /// coatings with one period.
     pub fn coefficients(&self, grid: &Grid, period: Option<(bool, bool)>) -> Quadrant {
         let Grid { mx, my, dx, dy } = *grid;
         let surfaces = [self.surface(0), self.surface(1)];
-        let c = surfaces[0].0 + surfaces[1].0;
+        let c = self.compliance();
         let mut quadrant = match period {
             Some(period) => periodic(mx, my, dx, dy, c, period),
             None => free(mx, my, dx, dy, c),
@@ -142,14 +150,14 @@ impl Coating {
             }
         }
         let largest = quadrant.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        // Cancellation in stiffer layers.
+        // In stiffer layers digits cancel.
         let stiffest = surfaces.iter().fold(STIFF, |most: f64, (_, _, mu, _)| most.max(*mu));
         quadrant.rounding += ACCURACY * largest * stiffest / STIFF;
         quadrant
     }
 }
 
-/// The compression of a layer by a mean pressure of 1: `t/M`. 0 if the layer has the material of the body.
+/// The compression of a layer by a mean pressure of 1, `t/M`. It is 0 if the layer has the material of the body.
 fn compression((c, t, mu, [nu1, nu2]): (f64, f64, f64, [f64; 2])) -> f64 {
     if mu == 1.0 && nu1 == nu2 {
         return 0.0;
@@ -158,6 +166,7 @@ fn compression((c, t, mu, [nu1, nu2]): (f64, f64, f64, [f64; 2])) -> f64 {
     PI * c * t * (1.0 - 2.0 * nu1) / ((1.0 - nu1) * (1.0 - nu1))
 }
 
+/// Adds the changes of the coefficients by a layer, without a period.
 fn add_elements(grid: &Grid, (c, t, mu, nu): (f64, f64, f64, [f64; 2]), values: &mut [f64]) {
     let Grid { mx, my, dx, dy } = *grid;
     let table = Table::new(mu, nu, ((mx as f64 + 1.0) * dx).hypot((my as f64 + 1.0) * dy) / t);
@@ -175,6 +184,7 @@ fn add_elements(grid: &Grid, (c, t, mu, nu): (f64, f64, f64, [f64; 2]), values: 
     }
 }
 
+/// Adds the changes of the coefficients by a layer, with two periods, except for the mean.
 fn add_waves(grid: &Grid, (c, t, mu, nu): (f64, f64, f64, [f64; 2]), values: &mut [f64]) {
     let Grid { mx, my, dx, dy } = *grid;
     let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
@@ -212,14 +222,14 @@ fn add_waves(grid: &Grid, (c, t, mu, nu): (f64, f64, f64, [f64; 2]), values: &mu
 mod tests {
     use super::*;
 
-    fn of(t: f64, mu: f64, nu: [f64; 2]) -> Coating {
-        // A ratio of 0: on a rigid body.
+    /// A layer of thickness t on one body, with G1/G2 = mu. If mu is 0, the body is rigid.
+    fn layer_on_body(t: f64, mu: f64, nu: [f64; 2]) -> Coating {
         let (modulus, below) = if mu == 0.0 { (1.0, f64::INFINITY) } else { (mu, 1.0) };
         let layer = Layer { thickness: t, shear_modulus: modulus, poisson_ratio: nu[0] };
         Coating { layers: [Some(layer), None], shear_modulus: [below, f64::INFINITY], poisson_ratio: [nu[1], 0.3] }
     }
 
-    /// The coefficients of 3 x 3 elements add up to that of one element three times as long.
+    /// The coefficients of 3 x 3 elements add up to that of one element with sides three times as long.
     #[test]
     fn nine_elements_are_one() {
         for (t, mu, nu) in [
@@ -230,14 +240,14 @@ mod tests {
             (12.0, 100.0, [0.3, 0.3]),
             (0.16, 5e3, [0.3, 0.2]),
         ] {
-            let coating = of(t, mu, nu);
+            let coating = layer_on_body(t, mu, nu);
             let fine = coating.coefficients(&Grid { mx: 40, my: 40, dx: 1.0, dy: 0.7 }, None);
             let coarse = coating.coefficients(&Grid { mx: 12, my: 12, dx: 3.0, dy: 2.1 }, None);
             for (kx, ky) in [(0, 0), (1, 0), (0, 2), (5, 3), (11, 11)] {
                 let nine = (-1..2).flat_map(|j| (-1..2).map(move |i| (3 * kx + i, 3 * ky + j)));
                 let sum: f64 = nine.map(|(kx, ky)| fine.at(kx, ky)).sum();
                 let error = (sum - coarse.at(kx, ky)).abs();
-                // This module has half of the error; a test has half of that.
+                // Half of the allowed error belongs to this module, and the test allows half of that.
                 assert!(
                     error <= 0.25 * coarse.rounding,
                     "t {t} mu {mu} ({kx}, {ky}): {error:e} of {:e}",
@@ -247,14 +257,14 @@ mod tests {
         }
     }
 
-    /// A layer of the body's material; and a layer so thick that the body below has no effect.
+    /// A layer of the body's material has the coefficients of the half-space, and so has a layer that is so thick that the body below has no effect.
     #[test]
     fn limits_are_half_spaces() {
         let grid = Grid { mx: 20, my: 16, dx: 1.0, dy: 1.0 };
         let plain = free(20, 16, 1.0, 1.0, 0.7 / (2.0 * PI));
-        let same = of(3.0, 1.0, [0.3, 0.3]).coefficients(&grid, None);
+        let same = layer_on_body(3.0, 1.0, [0.3, 0.3]).coefficients(&grid, None);
         assert!(same.values.iter().zip(&plain.values).all(|(a, b)| (a - b).abs() <= 1e-13));
-        let thick = of(1e9, 5.0, [0.3, 0.1]).coefficients(&grid, None);
+        let thick = layer_on_body(1e9, 5.0, [0.3, 0.1]).coefficients(&grid, None);
         assert!(thick.values.iter().zip(&plain.values).all(|(a, b)| (5.0 * a - b).abs() <= 1e-8));
     }
 }

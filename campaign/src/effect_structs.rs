@@ -1,4 +1,4 @@
-//! The structs of the C ABI for the effects of a case.
+//! The structs of the C ABI that describe the effects of a case.
 
 use std::ptr::null;
 
@@ -7,7 +7,7 @@ use contact_normal::ffi::*;
 use crate::effects::{Effects, Values};
 use crate::init::initialised;
 
-/// A struct for each effect.
+/// One struct of the C ABI for each effect. The structs of effects that the scene does not have stay at their defaults.
 pub struct EffectStructs {
     influence: contact_normal_influence,
     layer: contact_normal_layer,
@@ -18,15 +18,16 @@ pub struct EffectStructs {
     coating: [contact_normal_coating; 2],
 }
 
-fn pointer_if<T>(named: bool, to: &T) -> *const T {
-    if named {
+/// A pointer to a struct if the scene has this effect, otherwise NULL.
+fn pointer_if<T>(has_effect: bool, to: &T) -> *const T {
+    if has_effect {
         to
     } else {
         null()
     }
 }
 
-/// The structs of `effects`, whose arrays they point to.
+/// The structs for these effects. They point to the arrays of `effects`.
 pub fn effect_structs(effects: &Effects) -> Box<EffectStructs> {
     let mut structs = Box::new(EffectStructs {
         influence: initialised(contact_normal_influence_init),
@@ -43,13 +44,13 @@ pub fn effect_structs(effects: &Effects) -> Box<EffectStructs> {
             coating.poisson_ratio = layer.poisson_ratio;
         }
     }
-    if let Some(own) = &effects.influence {
-        (structs.influence.cx, structs.influence.cy) = (own.cx as i32, own.cy as i32);
-        structs.influence.coefficients = own.values.as_ptr();
+    if let Some(table) = &effects.influence {
+        (structs.influence.cx, structs.influence.cy) = (table.cx as i32, table.cy as i32);
+        structs.influence.coefficients = table.values.as_ptr();
     }
-    if let Some(own) = &effects.row_tables {
-        (structs.row_tables.cx, structs.row_tables.rows) = (own.cx as i32, own.cy as i32);
-        structs.row_tables.coefficients = own.values.as_ptr();
+    if let Some(tables) = &effects.row_tables {
+        (structs.row_tables.cx, structs.row_tables.rows) = (tables.cx as i32, tables.cy as i32);
+        structs.row_tables.coefficients = tables.values.as_ptr();
     }
     match &effects.layer {
         Some(Values::Uniform(value)) => structs.layer.compliance = *value,
@@ -72,7 +73,7 @@ pub fn effect_structs(effects: &Effects) -> Box<EffectStructs> {
 }
 
 impl EffectStructs {
-    /// Points the scene to the structs of its effects; NULL: the effect is off.
+    /// Points the scene to the structs of its effects. The pointers of all other effects are NULL.
     pub fn point_from(&self, scene: &mut contact_normal_scene, effects: &Effects) {
         scene.influence = pointer_if(effects.influence.is_some(), &self.influence);
         scene.layer = pointer_if(effects.layer.is_some(), &self.layer);
@@ -81,8 +82,8 @@ impl EffectStructs {
         scene.patches = pointer_if(effects.patches.is_some(), &self.patches);
         scene.row_tables = pointer_if(effects.row_tables.is_some(), &self.row_tables);
         for (b, coating) in self.coating.iter().enumerate() {
-            let named = effects.coating.as_ref().is_some_and(|effect| effect.layers[b].is_some());
-            scene.coating[b] = pointer_if(named, coating);
+            let is_coated = effects.coating.as_ref().is_some_and(|effect| effect.layers[b].is_some());
+            scene.coating[b] = pointer_if(is_coated, coating);
         }
     }
 }

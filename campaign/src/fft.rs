@@ -1,6 +1,6 @@
-//! Convolutions on grids by a transform of the campaign's own: radix 2, double precision, each twiddle by sine and cosine.
+//! Convolutions on grids by the campaign's Fourier transform: radix 2, in double precision, with sine and cosine computed for each twiddle.
 //!
-//! A product of a table of offsets and loads on a grid has the length of both together, up to the next power of two: nothing wraps.
+//! The period of a convolution is the number of offsets, rounded up to the next power of two. So different offsets do not coincide.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ fn times(a: Complex, b: Complex) -> Complex {
     [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
 }
 
-/// A length, a power of two, with its twiddles `e^(-2 pi i k/n)`.
+/// The transform of a length that is a power of two, with its twiddles `e^(-2 pi i k/n)`.
 struct Transform {
     n: usize,
     twiddles: Vec<Complex>,
@@ -22,7 +22,7 @@ impl Transform {
         Transform { n, twiddles: (0..n / 2).map(|k| [angle(k).cos(), angle(k).sin()]).collect() }
     }
 
-    /// In place: Cooley and Tukey's steps on values in the order of reversed bits.
+    /// Transforms values in place: sorts them in the order of reversed bits, then applies the steps of Cooley and Tukey.
     fn forward(&self, values: &mut [Complex]) {
         let n = self.n;
         let mut reversed = 0;
@@ -52,22 +52,23 @@ impl Transform {
     }
 }
 
-/// A grid of complex numbers, transformed in both directions.
+/// The transforms of a grid of complex numbers in both directions.
 struct Plane {
     along_x: Transform,
     along_y: Transform,
 }
 
 impl Plane {
-    /// A plane of at least x by y values.
+    /// The transforms of a grid of at least x by y values.
     fn new(x: usize, y: usize) -> Plane {
         Plane { along_x: Transform::new(x.next_power_of_two()), along_y: Transform::new(y.next_power_of_two()) }
     }
 
+    /// Transforms values `[y][x]` in place.
     fn forward(&self, values: &mut [Complex]) {
         let (nx, ny) = (self.along_x.n, self.along_y.n);
         values.chunks_exact_mut(nx).for_each(|row| self.along_x.forward(row));
-        // Eight columns at a time: whole lines of the cache.
+        // Eight columns are transformed at a time: in each row they are whole cache lines.
         let mut columns = vec![[0.0; 2]; 8 * ny];
         for first in (0..nx).step_by(8) {
             let count = (nx - first).min(8);
@@ -82,7 +83,7 @@ impl Plane {
     }
 }
 
-/// The spectrum of a table of offsets `-(mx - 1)..mx` by `-(my - 1)..my`.
+/// Convolutions with a table of entries at the offsets `-(mx - 1)..mx` by `-(my - 1)..my`, whose transform is `spectrum`.
 pub struct Convolution {
     mx: usize,
     my: usize,
@@ -91,7 +92,7 @@ pub struct Convolution {
 }
 
 impl Convolution {
-    /// `entry(kx, ky)`: the effect of a load of 1 at this offset from it.
+    /// `entry(kx, ky)` is the effect of a load of 1 on the element at this offset from the load.
     pub fn new(mx: usize, my: usize, entry: impl Fn(i64, i64) -> f64) -> Convolution {
         let plane = Plane::new(2 * mx - 1, 2 * my - 1);
         let (nx, ny) = (plane.along_x.n, plane.along_y.n);
@@ -106,7 +107,7 @@ impl Convolution {
         Convolution { mx, my, plane, spectrum }
     }
 
-    /// The convolutions of two fields of loads at once, one in each part of a complex number.
+    /// The convolutions of two fields of loads at once: one is the real part of the transformed values, the other the imaginary part.
     pub fn apply(&self, loads: [&[f64]; 2]) -> [Vec<f64>; 2] {
         let (nx, ny) = (self.plane.along_x.n, self.plane.along_y.n);
         let mut values = vec![[0.0; 2]; nx * ny];
@@ -116,16 +117,16 @@ impl Convolution {
             }
         }
         self.plane.forward(&mut values);
-        // The inverse is the transform of the conjugate, conjugated.
+        // The inverse transform is the conjugate of the transform of the conjugate.
         for (value, factor) in values.iter_mut().zip(&self.spectrum) {
             let [re, im] = times(*value, *factor);
             *value = [re, -im];
         }
         self.plane.forward(&mut values);
-        let over = 1.0 / (nx * ny) as f64;
+        let scale = 1.0 / (nx * ny) as f64;
         let at = |i: usize| values[i / self.mx * nx + i % self.mx];
         let n = self.mx * self.my;
-        [(0..n).map(|i| over * at(i)[0]).collect(), (0..n).map(|i| -over * at(i)[1]).collect()]
+        [(0..n).map(|i| scale * at(i)[0]).collect(), (0..n).map(|i| -scale * at(i)[1]).collect()]
     }
 
     /// The convolution of one field of loads.
@@ -135,7 +136,7 @@ impl Convolution {
     }
 }
 
-/// The real part of a sum of waves `amplitude e^(i phase)` on nx by ny elements, powers of two: a periodic field.
+/// A periodic field on nx by ny elements, both powers of two: the real part of a sum of waves with these amplitudes and phases.
 pub fn synthesis(nx: usize, ny: usize, amplitude_and_phase: impl Fn(usize, usize) -> (f64, f64)) -> Vec<f64> {
     let plane = Plane::new(nx, ny);
     let wave = |i: usize| {
@@ -152,7 +153,7 @@ mod tests {
     use super::*;
     use crate::random::Random;
 
-    /// A table without any symmetry, on a single element, rows, columns and odd counts.
+    /// The table has no symmetry. The grids are one element, one row, one column, and others.
     #[test]
     fn a_convolution_is_its_sum() {
         let mut random = Random::new(1);
@@ -168,7 +169,7 @@ mod tests {
                         (i as i64 % mx as i64 - j as i64 % mx as i64, i as i64 / mx as i64 - j as i64 / mx as i64)
                     };
                     let sum: f64 = (0..mx * my).map(|j| entry(offset(j).0, offset(j).1) * load[j]).sum();
-                    // At most 60 terms of at most 1, and seven steps of a transform.
+                    // There are at most 60 terms of at most 1, and seven steps of a transform.
                     assert!((sum - found).abs() <= 1e-13, "{mx} x {my}, {i}: {found} for {sum}");
                 }
             }

@@ -1,4 +1,4 @@
-//! Friction: a random scene with a random motion or forces, through the C ABI, each answer certified (`friction_rules`).
+//! Solves random scenes with friction, with random motions or tangential forces, through the C ABI, and checks each result (`friction_rules`).
 
 use contact_normal::ffi::{CONTACT_NORMAL_ITERATION_LIMIT, CONTACT_NORMAL_OK};
 
@@ -11,18 +11,20 @@ use crate::friction_sequence;
 use crate::random::Random;
 use crate::verdict::Verdict;
 
-/// Some lines of unlike bodies take more cycles than the default, 1000. This number is enough (docs/hard_cases.md).
+/// The number of cycles that is enough for all line contacts of unlike bodies. Some of them need more than the default, 1000 (docs/hard_cases.md).
 const SLOW_CYCLES: i32 = 3000;
+/// The excuse of such a line contact.
 const SLOW_LINE: &str = "friction: a line of unlike bodies took more than 1000 cycles";
 
-/// The result of a case: the statuses of its calls, and the rules that they broke.
+/// The result of a case.
 pub struct Run {
     pub case: Case,
+    /// The statuses of its calls.
     pub statuses: Vec<i32>,
     pub verdict: Verdict,
 }
 
-/// A random case, solved twice: without a handle, or with one.
+/// Makes a random case and checks it: by a sequence of calls of a handle, by two steps of a handle, or by the same call twice.
 pub fn run(random: &mut Random, is_measured: bool) -> Run {
     if random.chance(0.15) {
         let (case, statuses, verdict) = friction_sequence::run(random, is_measured);
@@ -31,32 +33,33 @@ pub fn run(random: &mut Random, is_measured: bool) -> Run {
     let place = Place::random(random, is_measured);
     let without = frictionless(&place, &Stop::sharp(random));
     if without.status < 0 {
-        // Refused, for example a force above the sum of the pressure limits. The normal campaign checks refusals.
+        // The normal problem is refused, for example a force above the sum of the pressure limits. Cases without friction check refusals.
         let case = Case::random(random, place, &without);
         return Run { case, statuses: vec![without.status], verdict: Verdict::excused("friction: no normal problem") };
     }
     let mut case = Case::random(random, place, &without);
-    let (twice, alone) = (random.chance(0.25), random.chance(0.1));
+    let (has_handle, has_negative_pressures) = (random.chance(0.25), random.chance(0.1));
     case.slide.sensitivities = random.chance(0.2);
     let mut statuses = Vec::new();
-    let mut verdict = match twice {
+    let mut verdict = match has_handle {
         true => with_handle(&case, &mut statuses),
-        false => on_its_own(&case, &mut statuses),
+        false => without_handle(&case, &mut statuses),
     };
-    if alone {
+    if has_negative_pressures {
         verdict.add(negative_pressures(random, &case, &without));
     }
     Run { case, statuses, verdict }
 }
 
-/// A random case, not solved; none if its normal problem is not OK.
+/// Makes a random case without solving it. None if its normal problem is not OK.
 pub fn draw(random: &mut Random) -> Option<Case> {
     let place = Place::random(random, false);
     let without = frictionless(&place, &Stop::sharp(random));
     (without.status == CONTACT_NORMAL_OK).then(|| Case::random(random, place, &without))
 }
 
-fn on_its_own(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
+/// Solves a case without a handle, twice, and checks the result.
+fn without_handle(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
     let Case { place, slide, stop, .. } = case;
     let found = call(place, slide, stop);
     statuses.push(found.status);
@@ -70,7 +73,7 @@ fn on_its_own(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
     verdict
 }
 
-/// The call with more cycles, which must be OK.
+/// Solves a line contact of unlike bodies with more cycles. The status must be OK.
 fn with_more_cycles(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
     let mut case = case.clone();
     case.stop.max_cycles = SLOW_CYCLES;
@@ -82,7 +85,7 @@ fn with_more_cycles(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
     verdict
 }
 
-/// Two solves with a handle. The second one, if the first is OK, starts from the tractions of the first.
+/// Solves a case with a handle, and checks the result. If it is OK, solves a second step, whose previous tractions are those of the first.
 fn with_handle(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
     let Case { place, slide, stop, .. } = case;
     let mut handle = match Handle::new(place, stop) {
@@ -109,7 +112,7 @@ fn with_handle(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
     verdict
 }
 
-/// For like bodies, the pressures are those of the scene without friction.
+/// Checks that pressures between like bodies are those of the scene without friction.
 fn leaves_pressures(case: &Case, found: &Found) -> Verdict {
     let mut verdict = Verdict::default();
     if case.place.is_alike() && case.stop.cancel_at.is_none() && found.status >= 0 {
@@ -122,12 +125,12 @@ fn leaves_pressures(case: &Case, found: &Found) -> Verdict {
     verdict
 }
 
-/// Pressures that are not positive count as no contact.
+/// Solves the tangential problem for pressures, some of which are negative instead of 0. Checks that the tractions do not change.
 fn negative_pressures(random: &mut Random, case: &Case, without: &Found) -> Verdict {
     let Case { place, slide, stop, .. } = case;
-    let pulls = |p: &f64| if *p > 0.0 || random.chance(0.5) { *p } else { -random.uniform() };
-    let pulling: Vec<f64> = without.p.iter().map(pulls).collect();
-    let [found, expected] = [&pulling, &without.p].map(|p| tangential(place, slide, stop, p));
+    let maybe_negative = |p: &f64| if *p > 0.0 || random.chance(0.5) { *p } else { -random.uniform() };
+    let with_negative: Vec<f64> = without.p.iter().map(maybe_negative).collect();
+    let [found, expected] = [&with_negative, &without.p].map(|p| tangential(place, slide, stop, p));
     let same = found.status == expected.status
         && found.q.iter().flatten().zip(expected.q.iter().flatten()).all(|(a, b)| a.to_bits() == b.to_bits());
     let mut verdict = Verdict::default();

@@ -1,4 +1,4 @@
-//! Calls of the C ABI with friction.
+//! Calls of the C ABI for scenes with friction.
 
 use std::ptr::{null, null_mut};
 
@@ -12,37 +12,39 @@ use crate::init::initialised;
 use crate::own_tractions::Structs;
 use crate::slide::Slide;
 
-/// A scene whose effects and friction point into a place and a slide.
+/// A scene that points to the arrays of a place and a slide.
 struct Scene {
     scene: contact_normal_scene,
-    // Boxed: the scene points to them.
+    // The scene points to these structs. They are boxed, so that their addresses stay the same.
     _effects: Box<EffectStructs>,
     _friction: Option<Box<contact_normal_friction>>,
     _tables: Option<Box<Structs>>,
 }
 
-/// The source of the tractions before a step.
+/// Where the tractions before a step come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum From {
-    /// The tractions of the slide, or none.
+    /// The slide has them; if it has none, the step starts from rest.
     Slide,
-    /// The tractions that the handle holds.
+    /// The handle has them: the step continues its last one.
     Handle,
 }
 
+/// The scene of a place, with friction if there is a slide.
 fn scene(place: &Place, slide: Option<(&Slide, From)>) -> Scene {
     let mut scene = bare_scene(&place.grid, &place.h, (place.shear_modulus, place.poisson_ratio), place.load);
     let effects = effect_structs(&place.effects);
     effects.point_from(&mut scene, &place.effects);
     let mut friction = slide.map(|(slide, from)| Box::new(friction(slide, from)));
-    let tables = place.own.as_ref().map(|own| Structs::new(own));
-    if let (Some(friction), Some(tables), Some(own)) = (&mut friction, &tables, &place.own) {
-        tables.put(own, friction);
+    let structs = place.traction_tables.as_ref().map(|tables| Structs::new(tables));
+    if let (Some(friction), Some(structs), Some(tables)) = (&mut friction, &structs, &place.traction_tables) {
+        structs.put(tables, friction);
     }
     scene.friction = friction.as_ref().map_or(null(), |friction| &raw const **friction);
-    Scene { scene, _effects: effects, _friction: friction, _tables: tables }
+    Scene { scene, _effects: effects, _friction: friction, _tables: structs }
 }
 
+/// The struct of the C ABI for a slide.
 fn friction(slide: &Slide, from: From) -> contact_normal_friction {
     let mut friction = initialised(contact_normal_friction_init);
     if slide.uniform {
@@ -65,6 +67,7 @@ fn friction(slide: &Slide, from: From) -> contact_normal_friction {
     friction
 }
 
+/// The options of a solve, which point to `canceller`.
 fn options(stop: &Stop, canceller: &mut Canceller) -> contact_normal_options {
     let mut options = initialised(contact_normal_options_init);
     (options.tolerance, options.precision, options.threads) = (stop.tolerance, stop.precision, stop.threads);
@@ -77,20 +80,24 @@ fn options(stop: &Stop, canceller: &mut Canceller) -> contact_normal_options {
     options
 }
 
-/// Arrays filled with sentinels: p, u, e, q, slip, and the state of each element.
+/// The outputs of a call.
 struct Arrays {
+    /// p, u, e, q in x and y, and the slip in x and y.
     numbers: Vec<Vec<f64>>,
+    /// `contact` and `stick_slip`.
     integers: [Vec<i32>; 2],
     report: contact_normal_report,
 }
 
 impl Arrays {
+    /// Outputs for n elements, filled with sentinels.
     fn new(n: usize) -> Arrays {
         let mut report = initialised(contact_normal_report_init);
         report.normal.force = SENTINEL;
         Arrays { numbers: vec![vec![SENTINEL; n]; 7], integers: [vec![-77; n], vec![-77; n]], report }
     }
 
+    /// The struct of the C ABI that points to these outputs.
     fn fields(&mut self) -> contact_normal_fields {
         let mut fields = initialised(contact_normal_fields_init);
         let at: Vec<*mut f64> = self.numbers.iter_mut().map(|values| values.as_mut_ptr()).collect();
@@ -100,12 +107,14 @@ impl Arrays {
         fields
     }
 
+    /// Whether the call wrote any output.
     fn is_written(&self) -> bool {
         self.numbers.iter().flatten().any(|value| value.to_bits() != SENTINEL.to_bits())
             || self.integers.iter().flatten().any(|&integer| integer != -77)
             || self.report.normal.force.to_bits() != SENTINEL.to_bits()
     }
 
+    /// The results of a call with this status.
     fn found(self, status: i32, overrun: Option<u32>) -> Found {
         let written = self.is_written();
         let message = if status == CONTACT_NORMAL_OK { String::new() } else { last_error() };
@@ -135,7 +144,7 @@ fn run(
     arrays.found(status, canceller.overrun())
 }
 
-/// Solves without friction.
+/// Solves a place without friction.
 pub fn frictionless(place: &Place, stop: &Stop) -> Found {
     run((place, None, stop), |scene, options, fields, report| {
         // SAFETY: structs with the arrays that they declare.
@@ -143,7 +152,7 @@ pub fn frictionless(place: &Place, stop: &Stop) -> Found {
     })
 }
 
-/// Solves without a handle.
+/// Solves a place with friction, without a handle.
 pub fn call(place: &Place, slide: &Slide, stop: &Stop) -> Found {
     run((place, Some((slide, From::Slide)), stop), |scene, options, fields, report| {
         // SAFETY: structs with the arrays that they declare.
@@ -151,7 +160,7 @@ pub fn call(place: &Place, slide: &Slide, stop: &Stop) -> Found {
     })
 }
 
-/// Solves without or with a handle, with friction changed by `change`.
+/// Solves a place with friction, whose struct is changed by `change`, with or without a handle.
 pub fn call_changed(
     handle: Option<&mut Handle>,
     (place, slide, from): (&Place, &Slide, From),
@@ -159,9 +168,9 @@ pub fn call_changed(
     change: impl FnOnce(&mut contact_normal_friction),
 ) -> Found {
     let mut changed = friction(slide, from);
-    let tables = place.own.as_ref().map(|own| Structs::new(own));
-    if let (Some(tables), Some(own)) = (&tables, &place.own) {
-        tables.put(own, &mut changed);
+    let structs = place.traction_tables.as_ref().map(|tables| Structs::new(tables));
+    if let (Some(structs), Some(tables)) = (&structs, &place.traction_tables) {
+        structs.put(tables, &mut changed);
     }
     change(&mut changed);
     run((place, None, stop), |scene, options, fields, report| {
@@ -177,7 +186,7 @@ pub fn call_changed(
     })
 }
 
-/// Solves the tangential problem for given pressures.
+/// Solves the tangential problem for given pressures p.
 pub fn tangential(place: &Place, slide: &Slide, stop: &Stop, p: &[f64]) -> Found {
     run((place, Some((slide, From::Slide)), stop), |scene, options, fields, report| {
         // SAFETY: the struct of this call.
@@ -214,11 +223,11 @@ impl Drop for Handle {
 }
 
 impl Handle {
-    /// A handle for a place, or the status and the message.
+    /// Makes a handle for a place. If the library refuses it, returns the status and the message.
     pub fn new(place: &Place, stop: &Stop) -> Result<Handle, (i32, String)> {
         let mut canceller = Canceller { calls: 0, at: 0 };
-        // Tables belong to the set-up of a handle.
-        let nothing = place.own.as_ref().map(|own| Slide::nothing(&own.kind, place.grid.len()));
+        // Tables of tractions belong to the set-up of a handle, so the scene of the set-up has friction with these tables.
+        let nothing = place.traction_tables.as_ref().map(|tables| Slide::nothing(&tables.kind, place.grid.len()));
         let slide = nothing.as_ref().map(|slide| (slide, From::Slide));
         let (scene, options) = (scene(place, slide), options(stop, &mut canceller));
         let mut handle = null_mut();
@@ -230,7 +239,7 @@ impl Handle {
         }
     }
 
-    /// Solves, with friction or without.
+    /// Solves a place with this handle, with friction if there is a slide.
     pub fn solve(&mut self, place: &Place, slide: Option<(&Slide, From)>, stop: &Stop) -> Found {
         run((place, slide, stop), |scene, options, fields, report| {
             // SAFETY: structs with the arrays that they declare, and a handle that no one else uses.
@@ -238,7 +247,7 @@ impl Handle {
         })
     }
 
-    /// The fields that the handle holds: a `Found` without a report.
+    /// The fields of the handle's last result, without a report.
     pub fn fields(&self, n: usize) -> Found {
         let mut arrays = Arrays::new(n);
         let mut fields = arrays.fields();
@@ -247,7 +256,7 @@ impl Handle {
         arrays.found(status, None)
     }
 
-    /// Solves places with one slide in one call; returns its status and the results.
+    /// Solves several places with the same slide in one call. Returns its status and the results.
     pub fn solve_batch(&mut self, places: &[Place], slide: (&Slide, From), stop: &Stop) -> (i32, Vec<Found>) {
         let mut canceller = Canceller { calls: 0, at: 0 };
         let options = options(stop, &mut canceller);

@@ -1,4 +1,4 @@
-//! A random case with friction: the bodies and their load, their motion, and the stopping rule.
+//! A random case with friction: the bodies and their load, the friction and the motion, and the stopping rule.
 
 use contact_normal::ffi::*;
 
@@ -19,7 +19,7 @@ pub struct Case {
     pub carried: f64,
 }
 
-/// mu of the elements, and a usual mu for the scale of motions.
+/// Random friction coefficients of n elements, whether they are uniform, and a usual coefficient for the scale of motions.
 fn coefficients(random: &mut Random, n: usize, is_roller: bool) -> (Vec<f64>, bool, f64) {
     let mu = match random.uniform() {
         u if is_roller && u < 0.5 => random.decades(1e-6, 0.01),
@@ -38,7 +38,7 @@ fn coefficients(random: &mut Random, n: usize, is_roller: bool) -> (Vec<f64>, bo
     ((0..n).map(|_| value(random)).collect(), false, usual)
 }
 
-/// A force relative to the friction bound: 0, nearly 0, a part, nearly all, more. For unlike bodies tractions change the bound by some hundredths.
+/// A random force relative to mu N: 0, nearly 0, a part, nearly all, or more. For unlike bodies tractions change mu N by some hundredths.
 fn part_of_friction(random: &mut Random) -> f64 {
     match random.uniform() {
         u if u < 0.02 => random.between(0.99, 1.02),
@@ -50,7 +50,7 @@ fn part_of_friction(random: &mut Random) -> f64 {
     }
 }
 
-/// A step in units of the longer side of an element: values from 2.9 to 3 become whole numbers from 3 to 1e5.
+/// A rolling distance in units of the longer side of an element. Lengths up to 2.9 stay; those from 2.9 to 3 become whole numbers from 3 to 1e5.
 fn step(length: f64) -> f64 {
     let beyond = (length - 2.9) / 0.1;
     if beyond > 0.0 {
@@ -61,7 +61,7 @@ fn step(length: f64) -> f64 {
 }
 
 impl Case {
-    /// Creepages or forces of the order that the bodies' pressures suggest.
+    /// A random case. Creepages and forces are relative to the displacements and pressures of the scene without friction.
     pub fn random(random: &mut Random, place: Place, without: &Found) -> Case {
         let (grid, n) = (place.grid, place.grid.len());
         let is_roller = place.surface == "roller";
@@ -72,9 +72,9 @@ impl Case {
         let largest = |values: &[f64]| values.iter().copied().fold(0.0, |a: f64, b| a.max(b.abs()));
         let slip = usual * largest(&without.u);
         let creepage = if is_shift { slip } else { slip / size };
-        let normal: f64 = mu.iter().zip(&without.p).map(|(mu, p)| mu * p * grid.element_area()).sum();
+        let carried: f64 = mu.iter().zip(&without.p).map(|(mu, p)| mu * p * grid.element_area()).sum();
         let prescribed = [0, 1].map(|k| i32::from(random.chance(if is_roller && k == 0 { 0.7 } else { 0.25 })));
-        let given = prescribed.iter().filter(|&&k| k == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE).count();
+        let force_count = prescribed.iter().filter(|&&k| k == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE).count();
         let signed = |random: &mut Random, value: f64| if random.chance(0.5) { value } else { -value };
         let amount = prescribed.map(|kind| {
             let part = match kind {
@@ -83,7 +83,7 @@ impl Case {
                     u if u < 0.2 => creepage * random.decades(1e-12, 1e6),
                     _ => creepage * random.decades(0.01, 10.0),
                 },
-                _ => normal * part_of_friction(random) / (given as f64).sqrt(),
+                _ => carried * part_of_friction(random) / (force_count as f64).sqrt(),
             };
             signed(random, part)
         });
@@ -93,7 +93,7 @@ impl Case {
         let noise =
             |random: &mut Random, size: f64| -> Vec<f64> { (0..n).map(|_| size * random.between(-1.0, 1.0)).collect() };
         let previous = random.chance(0.3).then(|| [0, 1].map(|_| noise(random, garbage)));
-        let own_size = slip * random.decades(0.01, 1.0) * if is_shift { 1.0 } else { grid.dx / size };
+        let rigid_size = slip * random.decades(0.01, 1.0) * if is_shift { 1.0 } else { grid.dx / size };
         let mut slide = Slide {
             mu,
             uniform,
@@ -105,7 +105,7 @@ impl Case {
             distance: if is_roller || random.chance(0.6) {
                 0.0
             } else {
-                // The oracle of coatings has a table along the distance, of limited length.
+                // For coatings the campaign has a table along the distance, whose length is limited.
                 let longest = if place.effects.coating.is_some() { 30.0 } else { f64::INFINITY };
                 let elements = step(random.between(0.3, 3.0)).min(longest);
                 (grid.dx.max(grid.dy) * elements).min(1e6 * grid.dx.min(grid.dy))
@@ -117,11 +117,11 @@ impl Case {
                 _ => random.between(0.0, 6.0),
             },
             previous,
-            rigid: random.chance(0.15).then(|| [0, 1].map(|_| noise(random, own_size))),
+            rigid: random.chance(0.15).then(|| [0, 1].map(|_| noise(random, rigid_size))),
             sensitivities: false,
         };
-        if let Some(own) = &place.own {
-            slide.fit(&own.kind, &mut random.beside(0x7ab1e), &grid);
+        if let Some(tables) = &place.traction_tables {
+            slide.fit(&tables.kind, &mut random.beside(0x7ab1e), &grid);
         }
         let mut stop = Stop::unhindered(random);
         if random.chance(0.1) {
@@ -130,13 +130,14 @@ impl Case {
         if random.chance(0.1) {
             stop.cancel_at = Some(random.integer(1, 30) as u32);
         }
-        Case { place, slide, stop, carried: normal }
+        Case { place, slide, stop, carried }
     }
 
-    /// The reason for which the forces may be refused, if there is one: a large enough creepage reaches any force below mu N.
+    /// The reason for which the library may refuse the forces as infeasible, if there is one. Forces below mu N must not be refused, because a large
+    /// enough creepage reaches them.
     pub fn may_be_infeasible(&self) -> Option<&'static str> {
         let size = self.slide.force();
-        let much = self.has_much_friction();
+        let has_much_friction = self.has_much_friction();
         match () {
             // A force of 0 is always possible.
             _ if size == 0.0 => None,
@@ -145,15 +146,15 @@ impl Case {
             _ if size >= self.carried * (1.0 - self.stop.tolerance.max(1e-4)) => {
                 Some("refused: a force of 0.9999 mu N or more")
             }
-            // Tractions change the pressures of unlike bodies, but not a given force.
-            _ if !self.carries_what_is_known() && (size >= 0.8 * self.carried || much) => {
+            // Tractions change the pressures of unlike bodies, and so mu N.
+            _ if !self.carries_what_is_known() && (size >= 0.8 * self.carried || has_much_friction) => {
                 Some("refused: a force on unlike bodies whose mu N the tractions change, of 0.8 of it or with mu > 1")
             }
             _ => None,
         }
     }
 
-    /// Whether mu N is known before the solve.
+    /// Whether mu N is known before the solve: the bodies are alike, or the normal force is given and mu is the same everywhere.
     pub fn carries_what_is_known(&self) -> bool {
         self.place.is_alike() || matches!(self.place.load, Load::Force(_)) && self.slide.uniform
     }
@@ -165,12 +166,12 @@ impl Case {
         self.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING && (x / grid.dx).abs().max((y / grid.dy).abs()) < 0.1
     }
 
-    /// The reason for which the normal problem may be refused with this status.
+    /// The reason for which the library may refuse the normal problem with this status, if there is one.
     pub fn normal_reason(&self, status: i32) -> Option<&'static str> {
         rules::reason(&self.place.normal(&self.stop, &vec![0.0; self.place.h.len()], 0.0), status)
     }
 
-    /// The loads before the step: none from rest; with given tractions the present pressures.
+    /// The loads before the step: none if it starts from rest, or the given tractions together with the present pressures.
     pub fn before(&self, p: &[f64]) -> Before {
         let p = if self.slide.previous.is_some() { p.to_vec() } else { vec![0.0; p.len()] };
         Before { q: self.slide.before(), p }
@@ -181,29 +182,31 @@ impl Case {
         ["shift", "transient rolling", "steady rolling"][self.slide.motion as usize]
     }
 
-    /// The motion, whether bodies are alike, and whether both are coated.
+    /// The row of the report in which the case counts: the motion and the kind of bodies.
     pub fn kind(&self) -> String {
         let bodies = match () {
             _ if self.place.effects.coating.is_some() => "coated",
-            _ if self.place.own.is_some() => "tables of like",
+            _ if self.place.traction_tables.is_some() => "tables of like",
             _ if self.place.is_alike() => "like",
             _ => "unlike",
         };
         format!("{}, {bodies} bodies", self.motion())
     }
 
-    /// A line contact of unlike bodies with the default cycles and without much friction, for which turns may not settle.
+    /// Whether the case is a line contact of unlike bodies with 1000 cycles and without much friction. The alternation between the normal and the
+    /// tangential problem may need more cycles then.
     pub fn is_slow_line(&self) -> bool {
         let is_line = self.place.grid.mx == 1 || self.place.grid.my == 1;
         is_line && !self.place.is_alike() && self.stop.is_unhindered() && !self.has_much_friction()
     }
 
-    /// Whether the turns between the problems of unlike bodies need not settle, by the library's documentation.
+    /// Whether a friction coefficient exceeds 1. By the library's documentation the alternation between the normal and the tangential problem of
+    /// unlike bodies need not converge then.
     pub fn has_much_friction(&self) -> bool {
         self.slide.mu.iter().any(|mu| *mu > 1.0)
     }
 
-    /// The case in one line.
+    /// A description of the case in one line.
     pub fn describe(&self) -> String {
         let Grid { mx, my, dx, dy } = self.place.grid;
         let (slide, stop) = (&self.slide, &self.stop);

@@ -1,7 +1,8 @@
-//! The conditions of stick and slip and of contact, recomputed by the campaign's own products (`tangential`).
+//! The residuals of the conditions of stick and slip, recomputed with products of the campaign (`tangential`).
 //!
-//! The slip is `s = w + A q - u'`. For unlike bodies pressures also have tangential displacements, and tractions displacements along the normal. The
-//! residual is the slip of a sticking element, and that of a slipping element without its part opposite to q.
+//! The slip is `s = w + A q - u'`, with the rigid slip w and the displacements u' before the step. Between unlike bodies pressures also cause
+//! tangential displacements, and tractions normal ones. The residual of a sticking element is its slip. That of a slipping element is its slip
+//! without the part that is opposite to q.
 
 use contact_normal::ffi::{CONTACT_NORMAL_MOTION_SHIFT, CONTACT_NORMAL_MOTION_STEADY_ROLLING};
 
@@ -9,17 +10,18 @@ use crate::friction_case::Case;
 use crate::friction_found::{Before, Found};
 use crate::tangential::{Operator, Vector};
 
-/// Tractions of more than this part of the bound slip, by the library's documents.
+/// An element slips if its traction is at least this part of its bound, by the library's documentation.
 pub const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
 
-/// The least scale of lengths relative to the lengths whose difference they are, by the library's documentation.
+/// The least scale of slips, relative to the displacements or rigid slips whose difference they are, by the library's documentation.
 const ROUND_OFF: f64 = 1.5e-8;
 
+/// The length of a vector.
 pub fn length(v: Vector) -> f64 {
     v[0].hypot(v[1])
 }
 
-/// The root mean square, without overflow or underflow.
+/// The root mean square of lengths, without overflow or underflow.
 fn rms(lengths: &[f64]) -> f64 {
     let largest = lengths.iter().copied().fold(0.0, f64::max);
     if !(largest > 0.0) {
@@ -28,27 +30,37 @@ fn rms(lengths: &[f64]) -> f64 {
     largest * (lengths.iter().map(|l| (l / largest).powi(2)).sum::<f64>() / lengths.len() as f64).sqrt()
 }
 
-/// The residuals of the conditions of a call, and their scales.
+/// The residual of the conditions of a result, its scale, and its round-off.
 pub struct Conditions {
+    /// The rms of the residuals of the elements in contact whose bound is not 0.
     pub left: f64,
+    /// The scale of the residual.
     pub scale: f64,
+    /// The possible round-off of the slip of an element.
     pub rounding: f64,
     /// The largest difference between the slip of the library and that of the campaign.
     pub slip_error: f64,
-    /// Displacements by tractions along the normal, and their possible round-off.
+    /// The displacements along the normal by tractions.
     pub along_normal: Vec<f64>,
+    /// The possible round-off of these displacements.
     pub normal_rounding: f64,
 }
 
-/// Displacements of a step: by the present tractions, by the previous loads, and tangential ones by pressures.
+/// The displacements of a step.
 struct Displacements {
+    /// The displacements in x, in y and along the normal by the present tractions.
     by_q: Vec<[f64; 3]>,
+    /// The tangential displacements before the step by tractions, at the positions of the particles before the step.
     before: Vec<Vector>,
+    /// The change of the tangential displacements by pressures.
     sideways: Vec<Vector>,
+    /// The possible round-off of the tangential displacements.
     rounding: f64,
+    /// The possible round-off of the normal displacements by tractions.
     normal_rounding: f64,
 }
 
+/// Computes the displacements of a step. `before` has the loads before it.
 fn displacements(case: &Case, found: &Found, before: &Before) -> Displacements {
     let step = case.slide.step(&case.place.grid);
     let is_steady = case.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING;
@@ -70,13 +82,14 @@ fn displacements(case: &Case, found: &Found, before: &Before) -> Displacements {
     Displacements { by_q: here.by_tractions(&found.q), before, sideways, rounding, normal_rounding }
 }
 
-/// The conditions of stick and slip.
+/// Computes the residual of the conditions of stick and slip. `before` has the loads before the step.
 pub fn conditions(case: &Case, found: &Found, before: &Before) -> Conditions {
     let slide = &case.slide;
     let is_steady = slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING;
     let d = displacements(case, found, before);
     let mut rounding = d.rounding;
     let (mut left, mut rigid, mut displaced, mut slip_error) = (Vec::new(), Vec::new(), Vec::new(), 0.0f64);
+    // Rigid slips without the creepages that the library found for given forces.
     let (mut without_found, creepage) = (Vec::new(), found.report.tangential.creepage);
     let given = [0, 1].map(|k| if slide.is_force(k) { 0.0 } else { creepage[k] });
     for i in 0..found.q.len() {
@@ -84,8 +97,8 @@ pub fn conditions(case: &Case, found: &Found, before: &Before) -> Conditions {
         if !(found.p[i] > 0.0) {
             continue;
         }
-        let (own, largest) = slide.rigid_slip(&case.place.grid, i, creepage);
-        let w = [0, 1].map(|k: usize| own[k] + d.sideways[i][k]);
+        let (rigid_slip, largest) = slide.rigid_slip(&case.place.grid, i, creepage);
+        let w = [0, 1].map(|k: usize| rigid_slip[k] + d.sideways[i][k]);
         rounding = rounding.max(8.0 * f64::EPSILON * largest + d.rounding);
         let s = [0, 1].map(|k: usize| w[k] + d.by_q[i][k] - d.before[i][k]);
         slip_error = slip_error.max(length([0, 1].map(|k: usize| s[k] - found.slip[i][k])));
@@ -100,29 +113,31 @@ pub fn conditions(case: &Case, found: &Found, before: &Before) -> Conditions {
         }
         left.push(length(rest));
         rigid.push(length(w));
-        let (own, _) = slide.rigid_slip(&case.place.grid, i, given);
-        without_found.push(length([0, 1].map(|k: usize| own[k] + d.sideways[i][k])));
+        let (given_slip, _) = slide.rigid_slip(&case.place.grid, i, given);
+        without_found.push(length([0, 1].map(|k: usize| given_slip[k] + d.sideways[i][k])));
         let step = [0, 1].map(|k: usize| d.by_q[i][k] - if is_steady { d.before[i][k] } else { 0.0 });
         displaced.push(length(step));
     }
-    let or_displacements = match slide.motion {
+    // The part of the displacements that the scale is at least.
+    let part_of_displacements = match slide.motion {
         CONTACT_NORMAL_MOTION_SHIFT => 1.0,
         CONTACT_NORMAL_MOTION_STEADY_ROLLING if slide.has_forces() => 1.0,
-        // In slow rolling the scale is the round-off of the displacements.
+        // In slow rolling the rigid slip may be smaller than the round-off of the displacements.
         _ => ROUND_OFF,
     };
-    // With given forces the creepages may cancel the rigid slip: its round-off is then the scale.
+    // With given forces the creepages may cancel the rigid slip. The scale is then its round-off.
     let cancelled = if slide.has_forces() { ROUND_OFF * rms(&without_found) } else { 0.0 };
-    let scale = rms(&rigid).max(or_displacements * rms(&displaced)).max(cancelled);
+    let scale = rms(&rigid).max(part_of_displacements * rms(&displaced)).max(cancelled);
     let along_normal = d.by_q.iter().map(|u| u[2]).collect();
     Conditions { left: rms(&left), scale, rounding, slip_error, along_normal, normal_rounding: d.normal_rounding }
 }
 
-/// The largest contact area for which it is decided whether a problem is monotone.
+/// The largest number of elements in contact for which [`is_monotone`] computes the factors.
 const MOST: usize = 700;
 
-/// Whether steady rolling is a monotone problem, which has a unique solution: `B + B'` on C is positive definite, by Cholesky's factors. It is not if
-/// a step is shorter than elements that are long in its direction. Large contact areas count as monotone.
+/// Whether steady rolling is a monotone problem, which has a unique solution. With the matrix B of the displacements of a step by tractions on C,
+/// this holds if `B + B^T` is positive definite, so that Cholesky's factors exist. It does not hold if a step is shorter than elements that are long
+/// in its direction. Larger contact areas than [`MOST`] count as monotone.
 pub fn is_monotone(case: &Case, found: &Found) -> bool {
     let contact: Vec<usize> = (0..found.q.len()).filter(|&i| case.slide.mu[i] * found.p[i] > 0.0).collect();
     if contact.len() > MOST {

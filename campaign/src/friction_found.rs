@@ -1,12 +1,12 @@
-//! The results of a call with friction, and the loads before the step.
+//! The results of a call with friction, and the loads on the bodies before its step.
 
 use contact_normal::ffi::contact_normal_report;
 
 /// The loads on the bodies before a step.
 pub struct Before {
-    /// Tractions.
+    /// The tractions of the elements.
     pub q: Vec<[f64; 2]>,
-    /// Pressures; they matter for unlike bodies only.
+    /// The pressures of the elements. Only with unlike bodies do they have an effect.
     pub p: Vec<f64>,
 }
 
@@ -14,6 +14,7 @@ pub struct Before {
 pub struct Found {
     pub status: i32,
     pub message: String,
+    /// Pressures.
     pub p: Vec<f64>,
     /// Deformed distances.
     pub e: Vec<f64>,
@@ -21,8 +22,10 @@ pub struct Found {
     pub contact: Vec<i32>,
     /// Displacements along the normal.
     pub u: Vec<f64>,
+    /// Tractions.
     pub q: Vec<[f64; 2]>,
     pub slip: Vec<[f64; 2]>,
+    /// 0: exterior, 1: stick, 2: slip.
     pub stick_slip: Vec<i32>,
     pub report: contact_normal_report,
     /// The number of callbacks after the one that cancelled, if one did.
@@ -32,7 +35,7 @@ pub struct Found {
 }
 
 impl Found {
-    /// The bits of the status and the fields. Two equal calls must have the same.
+    /// The bits of the status and of the fields, which must be the same for equal calls.
     pub fn bits(&self) -> Vec<u64> {
         let vectors = self.q.iter().chain(&self.slip).flatten();
         let numbers = self.p.iter().chain(&self.u).chain(&self.e).chain(vectors).map(|value| value.to_bits());

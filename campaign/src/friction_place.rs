@@ -1,4 +1,4 @@
-//! The place of a contact with friction: grid, bodies, surface, load, a layer, a limit of the pressures.
+//! The normal part of a scene with friction: grid, bodies, surface, load, and effects. Also the stopping rule of its solve.
 
 use std::sync::Arc;
 
@@ -10,28 +10,30 @@ use crate::effects::{self, Effects, Values};
 use crate::grid::{Grid, Load};
 use crate::half_space::{compliance, free};
 use crate::measured;
-use crate::own_tractions::{Kind, OwnTractions};
+use crate::own_tractions::{Kind, TractionTables};
 use crate::random::Random;
 use crate::scales::{self, Scales};
 use crate::surface;
 use crate::tangential_coefficients::{Compliance, Element};
 
-/// The bodies and their load.
+/// A scene without its friction.
 #[derive(Clone, Debug)]
 pub struct Place {
     pub grid: Grid,
     pub shear_modulus: [f64; 2],
     pub poisson_ratio: [f64; 2],
+    /// The name of the surface.
     pub surface: String,
+    /// Undeformed distances.
     pub h: Vec<f64>,
     pub load: Load,
-    /// At most a coating of both bodies, a layer and a limit.
+    /// At most a coating of both bodies, a layer, a limit, and row tables of the pressures.
     pub effects: Effects,
-    /// The caller's own tangential coefficients.
-    pub own: Option<Arc<OwnTractions>>,
+    /// The caller's tangential coefficients, if the scene has them.
+    pub traction_tables: Option<Arc<TractionTables>>,
 }
 
-/// In most cases like bodies, now and then with nu = 0, for which shifts start from a smaller load.
+/// Random shear moduli and Poisson ratios. Most bodies are alike. Some have nu = 0, for which the library starts shifts from a smaller load.
 fn bodies(random: &mut Random) -> ([f64; 2], [f64; 2]) {
     let modulus = if random.chance(0.3) { random.decades(1e-6, 1e9) } else { 1.0 };
     let nu = random.between(-0.5, 0.5);
@@ -43,6 +45,7 @@ fn bodies(random: &mut Random) -> ([f64; 2], [f64; 2]) {
     }
 }
 
+/// A random grid of up to 24 elements in each direction.
 fn elements(random: &mut Random, unit: f64) -> Grid {
     let (mx, my) = match random.uniform() {
         u if u < 0.04 => (1, 1),
@@ -58,7 +61,7 @@ fn elements(random: &mut Random, unit: f64) -> Grid {
     Grid { mx, my, dx: unit, dy }
 }
 
-/// Larger grids: squares, lines and strips.
+/// A random larger grid: a square, a line or a strip.
 fn large(random: &mut Random, unit: f64) -> Grid {
     let (mx, my) = match random.uniform() {
         u if u < 0.2 => (random.integer(24, 600), 1),
@@ -66,12 +69,12 @@ fn large(random: &mut Random, unit: f64) -> Grid {
         u if u < 0.9 => (random.integer(10, 50), random.integer(10, 50)),
         _ => (random.integer(50, 100), random.integer(50, 100)),
     };
-    // A separate sequence, so that the other random numbers do not change.
-    let own = &mut random.beside(0x11e5);
-    if my == 1 && own.chance(0.15) {
-        return Grid { mx: own.integer(1000, 4000), my, dx: unit, dy: unit * own.decades(1e2, 1e5) };
+    // A separate sequence of random numbers, so that the rest of the case stays the same.
+    let for_lines = &mut random.beside(0x11e5);
+    if my == 1 && for_lines.chance(0.15) {
+        return Grid { mx: for_lines.integer(1000, 4000), my, dx: unit, dy: unit * for_lines.decades(1e2, 1e5) };
     }
-    // Rollers: elements at least as long as the contact is wide.
+    // Lines like those of rollers: the elements are long across the line.
     if my == 1 && random.chance(0.4) {
         return Grid { mx, my, dx: unit, dy: unit * random.decades(1.0, 5.0 * mx as f64) };
     }
@@ -81,14 +84,14 @@ fn large(random: &mut Random, unit: f64) -> Grid {
 }
 
 impl Place {
-    /// A flat surface without a load.
+    /// A place with a flat surface, a force of 0 and no effects.
     pub fn new(grid: Grid, shear_modulus: [f64; 2], poisson_ratio: [f64; 2]) -> Place {
         let (surface, h) = ("flat".into(), vec![0.0; grid.len()]);
         let (load, effects) = (Load::Force(0.0), Effects::default());
-        Place { grid, shear_modulus, poisson_ratio, surface, h, load, effects, own: None }
+        Place { grid, shear_modulus, poisson_ratio, surface, h, load, effects, traction_tables: None }
     }
 
-    /// A small place, or a measured one.
+    /// A random place: on a small grid, or on a larger one with a surface like measured ones.
     pub fn random(random: &mut Random, is_measured: bool) -> Place {
         let unit = if random.chance(0.3) { random.decades(1e-6, 1e6) } else { 1.0 };
         let grid = if is_measured { large(random, unit) } else { elements(random, unit) };
@@ -102,20 +105,20 @@ impl Place {
         let (surface, h) = surfaces(random, &grid);
         let height = unit * random.decades(1e-4, 1.0);
         (place.surface, place.h) = (surface, h.iter().map(|h| h * height).collect());
-        // A separate sequence, so that the other random numbers do not change.
-        let own = &mut random.beside(0xc0a7);
-        // The quadrature of the oracle excludes slender elements.
-        if own.chance(0.15) && place.is_alike() && (0.1..=10.0).contains(&(grid.dx / grid.dy)) {
-            let coating = coating::on_both(own, &grid, (shear_modulus[0], poisson_ratio[0]));
+        // A separate sequence of random numbers, so that the rest of the case stays the same.
+        let for_bodies = &mut random.beside(0xc0a7);
+        // The quadrature of the campaign needs elements that are not slender.
+        if for_bodies.chance(0.15) && place.is_alike() && (0.1..=10.0).contains(&(grid.dx / grid.dy)) {
+            let coating = coating::on_both(for_bodies, &grid, (shear_modulus[0], poisson_ratio[0]));
             place.shear_modulus = coating.shear_modulus;
             place.effects.coating = Some(coating);
-        } else if own.chance(0.1) && place.is_alike() && grid.len() <= 600 {
-            place.take_tables(own);
+        } else if for_bodies.chance(0.1) && place.is_alike() && grid.len() <= 600 {
+            place.take_tables(for_bodies);
         }
         place.press(random, is_measured);
         if random.chance(0.1) {
-            let own = free(1, 1, grid.dx, grid.dy, place.compliance()).at(0, 0);
-            place.effects.layer = Some(effects::layer(random, &grid, own));
+            let self_influence = free(1, 1, grid.dx, grid.dy, place.compliance()).at(0, 0);
+            place.effects.layer = Some(effects::layer(random, &grid, self_influence));
         }
         if random.chance(0.15) {
             place.effects.limit = place.limit(random);
@@ -123,40 +126,40 @@ impl Place {
         place
     }
 
-    /// Adds tangential tables, and tables of the pressures if they are per loaded row.
+    /// Adds random tables of tangential coefficients. Row tables of tractions also need row tables of pressures.
     pub fn take_tables(&mut self, random: &mut Random) {
         let (grid, kind) = (self.grid, Kind::random(random, &self.grid));
         let element = self.element();
         let at = |kx: i64, ky: i64| {
-            let [xx, yy, xy, ..] = element.at([kx as f64 * grid.dx, ky as f64 * grid.dy]).0;
+            let ([xx, yy, xy, ..], _) = element.at([kx as f64 * grid.dx, ky as f64 * grid.dy]);
             [xx, yy, xy]
         };
-        let own = OwnTractions::new(kind, &grid, &at);
-        self.effects.row_tables = own.of_pressures(&grid, self.compliance());
-        self.own = Some(Arc::new(own));
+        let tables = TractionTables::new(kind, &grid, &at);
+        self.effects.row_tables = tables.of_pressures(&grid, self.compliance());
+        self.traction_tables = Some(Arc::new(tables));
     }
 
-    /// The materials at the surfaces of both bodies: those of the coating, or of the bodies.
+    /// The compliances of the materials at both surfaces: those of the coating, or of the bodies.
     pub fn materials(&self) -> Compliance {
         let coating = self.effects.coating.as_ref();
         let (modulus, ratio) = coating.map_or((self.shear_modulus, self.poisson_ratio), Coating::at_surface);
-        let each = |of: [f64; 2]| [0, 1].map(|b: usize| of[b] / modulus[b]);
-        let [shear, poisson] = [each([1.0; 2]), each(ratio)].map(|[a, b]| 0.5 * (a + b));
-        let [one, other] = each(ratio.map(|nu| 1.0 - 2.0 * nu));
-        Compliance { shear, poisson, unlike: if self.is_alike() { 0.0 } else { 0.25 * (one - other) } }
+        let over_g = |values: [f64; 2]| [0, 1].map(|b: usize| values[b] / modulus[b]);
+        let [shear, poisson] = [over_g([1.0; 2]), over_g(ratio)].map(|[a, b]| 0.5 * (a + b));
+        let [first, second] = over_g(ratio.map(|nu| 1.0 - 2.0 * nu));
+        Compliance { shear, poisson, unlike: if self.is_alike() { 0.0 } else { 0.25 * (first - second) } }
     }
 
-    /// Tangential coefficients of half-spaces of these materials.
+    /// The tangential coefficients of half-spaces of these materials.
     pub fn element(&self) -> Element {
         Element::new(self.materials(), [self.grid.dx, self.grid.dy])
     }
 
-    /// A limit that suits the load.
+    /// A random pressure limit that suits the load.
     pub fn limit(&self, random: &mut Random) -> Option<Values> {
         Some(scales::limit(random, &self.scales(), self.load, &self.h, &self.grid))
     }
 
-    /// Becomes a smooth cylinder on a line of elements that are long across: nearly plane strain. The load is a part of that of the line.
+    /// Becomes a smooth cylinder on a line of elements that are long across the line, so that the contact is nearly one of plane strain.
     fn become_roller(&mut self, random: &mut Random, unit: f64) {
         let (n, length) = (random.integer(3, 300), random.decades(10.0, 1e6));
         self.grid = Grid { mx: n, my: 1, dx: unit, dy: unit * length };
@@ -164,23 +167,24 @@ impl Place {
         let x = |i: usize| (i as f64 + 0.5 - 0.5 * n as f64) * unit;
         self.surface = "roller".into();
         self.h = (0..n).map(|i| x(i).powi(2) / (2.0 * radius)).collect();
-        // Hertz: a line of half-width a carries pi E* a^2/(4 R) per length.
+        // Hertz's line contact of half-width a carries the force pi E* a^2/(4 R) per length. The half-width is 0.1 to 0.45 of the line.
         let e_star = 1.0 / (std::f64::consts::PI * self.compliance());
         let a = random.between(0.1, 0.45) * n as f64 * unit;
         self.load = Load::Force(0.25 * std::f64::consts::PI * e_star * a * a / radius * self.grid.dy);
     }
 
-    /// The compliance of the surfaces.
+    /// The compliance `c = 1/(pi E*)` of the materials at both surfaces.
     fn compliance(&self) -> f64 {
-        let own = || compliance(self.shear_modulus, self.poisson_ratio);
-        self.effects.coating.as_ref().map_or_else(own, Coating::compliance)
+        let of_bodies = || compliance(self.shear_modulus, self.poisson_ratio);
+        self.effects.coating.as_ref().map_or_else(of_bodies, Coating::compliance)
     }
 
+    /// The scales of distances and pressures.
     fn scales(&self) -> Scales {
         Scales::of(&self.h, &Effects::default(), &self.grid, self.compliance())
     }
 
-    /// Sets another load.
+    /// Sets another random load.
     pub fn press(&mut self, random: &mut Random, is_measured: bool) {
         let c = self.compliance();
         self.load = match is_measured {
@@ -189,13 +193,14 @@ impl Place {
         };
     }
 
-    /// Whether pressures and tractions are independent.
+    /// Whether the bodies are alike: tractions then cause no normal displacements, and pressures no tangential ones.
     pub fn is_alike(&self) -> bool {
         self.shear_modulus[0] == self.shear_modulus[1] && self.poisson_ratio[0] == self.poisson_ratio[1]
     }
 
-    /// The normal problem with the displacements along the normal by tractions, and their possible round-off.
-    pub fn normal(&self, stop: &Stop, along: &[f64], rounding: f64) -> Case {
+    /// The normal problem as a case without friction. `by_tractions` are the normal displacements by tractions, which are added to h, and `rounding`
+    /// is their possible round-off.
+    pub fn normal(&self, stop: &Stop, by_tractions: &[f64], rounding: f64) -> Case {
         let Place { grid, shear_modulus, poisson_ratio, load, effects, .. } = self.clone();
         let how = How {
             method: 0,
@@ -210,7 +215,7 @@ impl Place {
             fixed: None,
             given: None,
         };
-        let h = self.h.iter().zip(along).map(|(h, u)| h + u).collect();
+        let h = self.h.iter().zip(by_tractions).map(|(h, u)| h + u).collect();
         let (surface, surfaces) = (self.surface.clone(), surface::any as case::Surfaces);
         Case {
             seed: 0,
@@ -230,28 +235,31 @@ impl Place {
     }
 }
 
-/// The stopping rule of the solve.
+/// The stopping rule of a solve.
 #[derive(Clone, Debug)]
 pub struct Stop {
     pub tolerance: f64,
     pub precision: i32,
     pub threads: i32,
     pub max_cycles: i32,
+    /// The number of the callback's call that cancels the solve; None: never.
     pub cancel_at: Option<u32>,
 }
 
 impl Stop {
+    /// A random tolerance, with 1000 cycles and without cancelling.
     pub fn unhindered(random: &mut Random) -> Stop {
         let tolerance = 10f64.powi(-(random.integer(3, 8) as i32));
         let (precision, threads) = (random.integer(0, 2) as i32, if random.chance(0.05) { 2 } else { 1 });
         Stop { tolerance, precision, threads, max_cycles: 1000, cancel_at: None }
     }
 
-    /// A rule with a tolerance that determines mu N.
+    /// The same with a tolerance of 1e-8, which is sharp enough to determine mu N.
     pub fn sharp(random: &mut Random) -> Stop {
         Stop { tolerance: 1e-8, ..Stop::unhindered(random) }
     }
 
+    /// Whether the solve has 1000 cycles, and is not cancelled.
     pub fn is_unhindered(&self) -> bool {
         self.max_cycles == 1000 && self.cancel_at.is_none()
     }

@@ -1,4 +1,4 @@
-//! The rules for every result with friction, of like and unlike bodies, and the accepted reasons of refusals and early stops.
+//! Checks the promises of the library for every result with friction, of like and unlike bodies. Refusals and early stops need an accepted reason.
 
 use contact_normal::ffi::*;
 
@@ -13,27 +13,28 @@ use crate::rules;
 use crate::tangential::Operator;
 use crate::verdict::Verdict;
 
-/// A verdict whose failures name the case.
+/// A verdict whose failures describe the case.
 struct Broken<'a> {
     case: &'a Case,
     verdict: Verdict,
 }
 
 impl Broken<'_> {
+    /// Adds a broken promise, unless it is `kept`.
     fn unless(&mut self, kept: bool, promise: &'static str, details: impl FnOnce() -> String) {
         let case = self.case;
         self.verdict.unless(kept, promise, || format!("{}: {}", case.describe(), details()));
     }
 }
 
-/// Checks a result, for the loads before the step.
+/// Checks a result. `before` has the loads before the step.
 pub fn check(case: &Case, found: &Found, before: &Before) -> Verdict {
     let mut broken = Broken { case, verdict: Verdict::default() };
     let status = found.status;
     if status < 0 {
         broken.unless(!found.written, "friction refused leaves outputs alone", || format!("status {status}"));
         broken.unless(!found.message.is_empty(), "friction refused says why", || format!("status {status}"));
-        let told = || format!("status {status}, {}", found.message);
+        let details = || format!("status {status}, {}", found.message);
         if status == CONTACT_NORMAL_INFEASIBLE && !case.carries_what_is_known() {
             let exceeded = exceeded(case);
             broken.unless(exceeded.is_none(), "a force is refused if no creepage carries more", || {
@@ -42,7 +43,7 @@ pub fn check(case: &Case, found: &Found, before: &Before) -> Verdict {
         }
         match (reason(case, status), case.normal_reason(status)) {
             (Some(why), _) | (_, Some(why)) => broken.verdict.excuse(why),
-            _ => broken.unless(false, "friction is refused for a reason", told),
+            _ => broken.unless(false, "friction is refused for a reason", details),
         }
         return broken.verdict;
     }
@@ -67,7 +68,8 @@ fn reason(case: &Case, status: i32) -> Option<&'static str> {
     None
 }
 
-/// The violated conditions of the tangential problem, for a status >= 0. `certified`: this module has the coefficients and the slip of the call.
+/// Checks the tangential problem of a result with a status >= 0. `certified`: the campaign has the coefficients and the slip of the call, so that the
+/// conditions of stick and slip are checked as well.
 pub fn answer(case: &Case, found: &Found, certified: bool) -> Verdict {
     let mut broken = Broken { case, verdict: Verdict::default() };
     let carried = check_bounds(case, found, &mut broken);
@@ -78,14 +80,14 @@ pub fn answer(case: &Case, found: &Found, certified: bool) -> Verdict {
     broken.verdict
 }
 
-/// Checks that values are finite, tractions within their bounds, stick and slip, and the forces; returns mu N.
+/// Checks that values are finite, that tractions are within their bounds, that stick_slip belongs to the tractions, and the forces. Returns mu N.
 fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
     let (status, slide) = (found.status, &case.slide);
     let report = &found.report;
-    let of_report =
+    let vectors_of_report =
         report.tangential.force.iter().chain(&report.tangential.creepage).chain(&report.tangential.sensitivities);
     let numbers = found.p.iter().chain(found.q.iter().chain(&found.slip).flatten());
-    let numbers = numbers.chain(of_report).chain([
+    let numbers = numbers.chain(vectors_of_report).chain([
         &report.tangential.moment,
         &report.tangential.residual,
         &report.tangential.gap,
@@ -94,9 +96,9 @@ fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
     let area = case.place.grid.element_area();
     let (mut carried, mut sum) = (0.0, [0.0; 2]);
     for i in 0..found.q.len() {
-        // On a fixed area some elements may be in tension.
+        // On a fixed area pressures may be negative. Then the bound is 0.
         let (q, bound) = (found.q[i], slide.mu[i] * found.p[i].max(0.0));
-        // If mu p is 0 or underflows, tractions are 0.
+        // This also requires tractions of 0 where mu p is 0 or underflows.
         broken.unless(length(q) <= bound, "|q| <= mu p to the last bit", || {
             format!("element {i}: {q:?}, bound {bound:e}, status {status}")
         });
@@ -130,7 +132,7 @@ fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
     carried
 }
 
-/// Status OK: the conditions of stick and slip.
+/// Checks the conditions of stick and slip, if the status is OK.
 fn check_slip(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
     let Conditions { left, scale, rounding, slip_error, .. } = *conditions;
     if found.status != CONTACT_NORMAL_OK {
@@ -148,12 +150,13 @@ fn check_slip(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
     broken.unless(slip_error <= rounding, "the slip is w + A q - u'", || format!("{slip_error:e}, {rounding:e}"));
 }
 
-/// The conditions of contact, with the displacements by tractions along the normal.
+/// Checks the conditions of contact, with the displacements along the normal by tractions.
 fn check_contact(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
     let case = broken.case;
     let normal = case.place.normal(&case.stop, &conditions.along_normal, conditions.normal_rounding);
     let outputs = outputs(found);
-    // If turns do not settle, each problem has the result of the other one a turn before.
+    // If the alternation between the normal and the tangential problem of unlike bodies does not converge, the pressures belong to the tractions of
+    // the iteration before.
     let failures = match found.status == CONTACT_NORMAL_OK || case.place.is_alike() {
         true => rules::is_true(&normal, &outputs),
         false => rules::is_admissible(&normal, &outputs),
@@ -163,7 +166,7 @@ fn check_contact(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>
     }
 }
 
-/// The results of the normal problem of a call.
+/// The results of the normal problem.
 fn outputs(found: &Found) -> Outputs {
     let Found { status, message, p, u, e, contact, report, overrun, written, .. } = found;
     Outputs {
@@ -179,7 +182,7 @@ fn outputs(found: &Found) -> Outputs {
     }
 }
 
-/// Status > 0: the reason must be an accepted one.
+/// Checks that there is an accepted reason for a status > 0.
 fn check_stop(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
     let (case, status) = (broken.case, found.status);
     let Conditions { left, scale, rounding, ref along_normal, normal_rounding, .. } = *conditions;
@@ -208,14 +211,14 @@ fn check_stop(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
     }
 }
 
-/// Whether the given forces are nearly those of full slip with the last pressures. Turns may then alternate between pressures that carry them and
-/// others that do not.
+/// Whether the given forces are nearly those of full slip with the last pressures. The alternation between the normal and the tangential problem may
+/// then switch between pressures that carry the forces and pressures that do not.
 fn nearly_slips(case: &Case, found: &Found) -> bool {
     let carried: f64 = case.slide.mu.iter().zip(&found.p).map(|(mu, p)| mu * p.max(0.0)).sum();
     case.slide.force() >= (1.0 - 1e-3) * carried * case.place.grid.element_area()
 }
 
-/// The tables xx, yy and xy of the half-space of a place, over the offsets `-mx..mx` by `-my..my`.
+/// The tables xx, yy and xy of the half-spaces of a place, at the offsets `-mx..mx` by `-my..my`.
 pub fn tables(place: &Place) -> Vec<Vec<f64>> {
     let Grid { mx, my, .. } = place.grid;
     let wider = Grid { mx: mx + 1, my: my + 1, ..place.grid };

@@ -1,6 +1,8 @@
-//! A handle in a random sequence of calls with friction and without: from rest, continued, refused, cancelled once, a batch.
+//! Checks a handle in a random sequence of calls with and without friction: steps from rest, continued steps, refused calls, cancelled calls, and
+//! batches.
 //!
-//! A refusal changes no output, and nothing that the handle holds. A call without a start has the bits of a call without a handle.
+//! A refused call must change neither the outputs nor the results that the handle holds. A call that does not start from the last result must have
+//! the bits of a call without a handle.
 
 use contact_normal::ffi::*;
 
@@ -17,17 +19,18 @@ use crate::verdict::Verdict;
 struct Sequence<'a> {
     random: &'a mut Random,
     handle: Handle,
-    /// The last step with friction. The next one continues from it, also after solves without friction.
+    /// The loads at the end of the last step with friction. The next step continues from them, also after solves without friction.
     last: Option<Before>,
     is_measured: bool,
+    /// The present case.
     case: Case,
-    /// The sequence in words, for the messages of failures.
+    /// The calls so far in words, for the messages of failures.
     history: String,
     statuses: Vec<i32>,
     verdict: Verdict,
 }
 
-/// Runs a sequence; returns the statuses of its calls, and the broken promises.
+/// Makes a random case and a sequence of calls of a handle. Returns the last case, the statuses of the calls, and the verdict.
 pub fn run(random: &mut Random, is_measured: bool) -> (Case, Vec<i32>, Verdict) {
     let place = Place::random(random, is_measured);
     let without = frictionless(&place, &Stop::sharp(random));
@@ -52,8 +55,8 @@ pub fn run(random: &mut Random, is_measured: bool) -> (Case, Vec<i32>, Verdict) 
 }
 
 impl Sequence<'_> {
+    /// Makes one random call, mostly with another load and motion.
     fn step(&mut self) {
-        // The next load and motion; the set-up does not change.
         if self.random.chance(0.7) {
             self.change();
         }
@@ -67,6 +70,7 @@ impl Sequence<'_> {
         }
     }
 
+    /// Changes the load, the limit and the motion of the case, but not the set-up of the handle.
     fn change(&mut self) {
         let mut place = self.case.place.clone();
         place.press(self.random, self.is_measured);
@@ -81,27 +85,31 @@ impl Sequence<'_> {
         self.case = Case { stop, ..Case::random(self.random, place, &without) };
     }
 
+    /// Adds a call to the history and its status to the statuses.
     fn note(&mut self, what: &str, found: &Found) {
         self.history += &format!("{what} ({}{}), ", found.status, found.message);
         self.statuses.push(found.status);
     }
 
-    /// Remembers a step with friction that has a result.
+    /// Stores the loads at the end of a step with friction, if it has a result.
     fn remember(&mut self, found: &Found) {
         if found.status >= 0 {
             self.last = Some(Before { q: found.q.clone(), p: found.p.clone() });
         }
     }
 
+    /// Adds a broken promise with the case and the history, unless the promise is `kept`.
     fn fail_unless(&mut self, kept: bool, promise: &'static str) {
         let details = format!("{}: {}", self.case.describe(), self.history);
         self.verdict.unless(kept, promise, || details);
     }
 
+    /// Adds the verdict on a call, with the history.
     fn add(&mut self, verdict: Verdict) {
         self.verdict.add(verdict.within(&format!("{}: ", self.history)));
     }
 
+    /// A call without friction.
     fn without_friction(&mut self) {
         let Case { place, stop, .. } = &self.case;
         let (found, fresh) = (self.handle.solve(place, None, stop), frictionless(place, stop));
@@ -109,6 +117,7 @@ impl Sequence<'_> {
         self.fail_unless(found.bits() == fresh.bits(), "a start from nothing has the bits of a new handle");
     }
 
+    /// A step from rest, or from given tractions.
     fn start(&mut self) {
         let Case { place, slide, stop, .. } = &self.case;
         let found = self.handle.solve(place, Some((slide, From::Slide)), stop);
@@ -119,14 +128,15 @@ impl Sequence<'_> {
         self.fail_unless(found.bits() == fresh.bits(), "a start from nothing has the bits of a new handle");
     }
 
-    /// A step from the last one with friction; without one it must be refused.
+    /// A step that continues from the last one with friction. If there is none, the call must be refused.
     fn continued(&mut self) {
         let held = self.handle.fields(self.case.place.grid.len());
         let Case { place, slide, stop, .. } = &self.case;
         let found = self.handle.solve(place, Some((slide, From::Handle)), stop);
         self.note("continued", &found);
         if found.status == CONTACT_NORMAL_INVALID_ARGUMENT {
-            // There is no step to continue from, or steady rolling has a step of less than a tenth of an element.
+            // The call may be refused because there is no step to continue from, or because a step of steady rolling is shorter than a tenth of an
+            // element.
             let is_short = self.case.step_is_too_short();
             self.fail_unless(self.last.is_none() || is_short, "a step continues from the last one with friction");
             self.keeps(&held);
@@ -208,7 +218,7 @@ impl Sequence<'_> {
         self.fail_unless(same, "a refusal changes nothing that a handle holds");
     }
 
-    /// A call that is cancelled once, at any callback; `check` verifies that it stays cancelled.
+    /// A call whose callback cancels it once.
     fn cancelled(&mut self) {
         let stop = Stop { cancel_at: Some(self.random.integer(1, 40) as u32), ..self.case.stop.clone() };
         let Case { place, slide, carried, .. } = self.case.clone();
@@ -219,7 +229,8 @@ impl Sequence<'_> {
         self.add(check(&case, &found, &case.before(&found.p)));
     }
 
-    /// Several loads in one call, on one to three threads: the bits are those of single calls. No step may continue.
+    /// Several loads in one call, with one to three threads. The bits must be those of single calls. A batch that continues from the last step must
+    /// be refused.
     fn batch(&mut self) {
         let Case { place, slide, stop, .. } = self.case.clone();
         let stop = Stop { threads: self.random.integer(1, 3) as i32, ..stop };

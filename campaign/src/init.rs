@@ -1,8 +1,8 @@
-//! Structs of the C ABI with their defaults.
+//! Structs of the C ABI with their default values.
 
 use std::mem::MaybeUninit;
 
-/// A struct as its `_init` function fills it.
+/// A struct that its `_init` function has filled with the defaults.
 pub fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
     let mut value = MaybeUninit::uninit();
     // SAFETY: `_init` fills a whole struct.

@@ -1,4 +1,5 @@
-//! A random law of friction and a plastic layer, with the bounds by slips and the state of particles that they imply for a result.
+//! A random law of friction and a plastic layer. Computes the traction bounds and the state of the particles that they imply for the slips of a
+//! result.
 
 use contact_normal::ffi::*;
 
@@ -8,25 +9,31 @@ use crate::friction_found::Found;
 use crate::own_tractions::Kind;
 use crate::random::Random;
 
-/// The state of the particles of the interface: mu and a yield limit for each element.
+/// The state of the particles of the interface that are at the elements after a step.
 #[derive(Clone, Debug)]
 pub struct Particles {
+    /// The friction coefficients.
     pub mu: Vec<f64>,
+    /// The yield limits.
     pub limit: Vec<f64>,
 }
 
-/// A law, a layer, and the branch of the solution. Values of 0: there is none.
+/// A law of friction, a plastic layer, and the branch of the solution. The fields are those of `contact_normal_friction` (docs/laws.md).
 #[derive(Clone, Debug)]
 pub struct Law {
+    /// The kind of the law; 0: friction of Coulomb.
     pub kind: i32,
     pub kinetic: f64,
     pub falling: [f64; 2],
     pub half_speed: [f64; 2],
-    /// The rolling speed; a shift has a duration instead.
+    /// The rolling speed. A shift has a duration instead.
     pub speed: f64,
+    /// The duration of a step.
     pub duration: f64,
+    /// The distance over which a particle forgets its friction coefficient; 0: it has no memory.
     pub memory_distance: f64,
     pub memory_speed: f64,
+    /// The yield limit of fresh material; 0: the layer does not yield.
     pub yield_limit: f64,
     pub hardening: f64,
     pub branch: i32,
@@ -35,11 +42,12 @@ pub struct Law {
 }
 
 impl Law {
-    /// A law for a case, whose motion is changed to one that is solved with it: slips of its order, tractions of the order of its pressures.
+    /// A random law for a case. Its speeds and distances are relative to the slips of the case, its yield limit to the pressures p. Changes the
+    /// motion of the case to one that the library solves with a law.
     pub fn random(random: &mut Random, case: &mut Case, p: &[f64]) -> Law {
         let (grid, slide) = (case.place.grid, &mut case.slide);
         let is_shift = slide.motion == CONTACT_NORMAL_MOTION_SHIFT;
-        // Prescribed slips; for forces those that displacements suggest.
+        // The order of the rigid slip. If a force is given, its creepage is not known and counts as 0.
         let amounts = [0, 1].map(|k| if slide.is_force(k) { 0.0 } else { slide.amount[k] });
         let steps = if is_shift { 1.0 } else { grid.dx };
         let slip = length(amounts) * steps + 1e-6 * grid.dx;
@@ -47,7 +55,8 @@ impl Law {
         let falls = random.chance(0.8);
         let h = [0, 1].map(|_| slip / duration * random.decades(0.01, 100.0));
         let has_memory = falls && random.chance(0.5);
-        // Bounds may rise although a law falls, in two ways; they are drawn more often than by chance.
+        // Bounds may rise although a law falls: because of hardening, or because coefficients differ from element to element. Both would be rare by
+        // chance.
         let (rises, differs) = (random.chance(0.25), random.chance(0.25) && !slide.has_forces());
         if differs {
             slide.uniform = false;
@@ -73,29 +82,31 @@ impl Law {
             yield_limit: if yields { yield_limit } else { 0.0 },
             hardening: if hardens { sign * yield_limit / slip * steepness } else { 0.0 },
             branch: if slide.has_forces() || random.chance(0.7) { 0 } else { random.integer(1, 2) as i32 },
-            compliance: if random.chance(0.4) { own_influence(case) * random.decades(0.1, 3.0) } else { 0.0 },
+            compliance: if random.chance(0.4) { self_influence(case) * random.decades(0.1, 3.0) } else { 0.0 },
         };
         let slide = &mut case.slide;
         slide.distance = 0.0;
         slide.direction = [0.0, std::f64::consts::PI][usize::from(random.chance(0.3))];
-        if let Some(own) = case.place.own.as_ref().filter(|own| matches!(own.kind, Kind::Uneven { .. })) {
-            (slide.motion, slide.direction) = (CONTACT_NORMAL_MOTION_STEADY_ROLLING, own.kind.direction());
+        if let Some(tables) =
+            case.place.traction_tables.as_ref().filter(|tables| matches!(tables.kind, Kind::Uneven { .. }))
+        {
+            (slide.motion, slide.direction) = (CONTACT_NORMAL_MOTION_STEADY_ROLLING, tables.kind.direction());
         }
         slide.sensitivities = false;
         law
     }
 
-    /// Whether there is a law, or a limit that changes with the slip.
-    pub fn is_one(&self) -> bool {
+    /// Whether the bound of an element depends on its slip: there is a law of friction, or a yield limit that hardens or softens.
+    pub fn depends_on_slip(&self) -> bool {
         self.kind > 0 || self.hardening != 0.0
     }
 
-    /// The state of fresh material.
+    /// The state of particles of fresh material.
     pub fn fresh(&self, case: &Case) -> Particles {
         Particles { mu: case.slide.mu.clone(), limit: vec![self.yield_limit; case.slide.mu.len()] }
     }
 
-    /// Writes the law into the struct; `before` is the state of the particles before the step.
+    /// Writes the law to the struct of the C ABI. `before` is the state of the particles before the step, if the caller gives it.
     pub fn put(&self, friction: &mut contact_normal_friction, before: Option<&Particles>) {
         (friction.law, friction.kinetic, friction.falling) = (self.kind, self.kinetic, self.falling);
         (friction.half_speed, friction.speed, friction.time_step) = (self.half_speed, self.speed, self.duration);
@@ -108,9 +119,9 @@ impl Law {
         }
     }
 
-    /// mu at a slip velocity, relative to that at rest.
-    fn falls(&self, v: f64) -> f64 {
-        let f = |k: usize| {
+    /// The friction coefficient at a slip velocity, relative to that at rest.
+    fn relative_mu(&self, v: f64) -> f64 {
+        let term = |k: usize| {
             let x = v / self.half_speed[k];
             match (self.kind, k) {
                 (CONTACT_NORMAL_FRICTION_LAW_LINEAR, _) => (1.0 - 0.5 * x).max(0.0),
@@ -120,29 +131,30 @@ impl Law {
             }
         };
         let [a, b] = self.falling;
-        (self.kinetic + a * f(0) + if b > 0.0 { b * f(1) } else { 0.0 }) / (self.kinetic + a + b)
+        (self.kinetic + a * term(0) + if b > 0.0 { b * term(1) } else { 0.0 }) / (self.kinetic + a + b)
     }
 
-    /// The bound of an element at a slip, and the new mu and limit of its particle.
-    fn at(&self, slip: f64, (p, mu): (f64, f64), (had_mu, had_limit): (f64, f64)) -> (f64, f64, f64) {
-        let mut now = mu;
+    /// The traction bound of an element at a slip, and the new friction coefficient and yield limit of its particle. `p` and `mu` are the pressure
+    /// and the coefficient at rest of the element; `old_mu` and `old_limit` are those of the particle before the step.
+    fn bound_mu_and_limit(&self, slip: f64, (p, mu): (f64, f64), (old_mu, old_limit): (f64, f64)) -> (f64, f64, f64) {
+        let mut new_mu = mu;
         if self.kind > 0 {
             let v = slip / self.duration;
             let kept = self.memory_distance / (self.memory_distance + self.duration * v.max(self.memory_speed));
             let kept = if self.memory_distance > 0.0 { kept } else { 0.0 };
-            now = kept * had_mu + (1.0 - kept) * mu * self.falls(v);
+            new_mu = kept * old_mu + (1.0 - kept) * mu * self.relative_mu(v);
         }
-        let now = now.max(1e-9 * mu);
-        let cap = now * p;
-        if self.yield_limit == 0.0 || had_limit >= cap {
-            return (cap, now, had_limit);
+        let new_mu = new_mu.max(1e-9 * mu);
+        let cap = new_mu * p;
+        if self.yield_limit == 0.0 || old_limit >= cap {
+            return (cap, new_mu, old_limit);
         }
-        let least = (1e-3 * self.yield_limit).min(had_limit);
-        let limit = (had_limit + self.hardening * slip).max(least).min(cap);
-        (limit, now, limit)
+        let least = (1e-3 * self.yield_limit).min(old_limit);
+        let limit = (old_limit + self.hardening * slip).max(least).min(cap);
+        (limit, new_mu, limit)
     }
 
-    /// The scale of slips, `plain` without the layer: in a shift, and with given forces, displacements of the layer count as well.
+    /// The scale of slips; `plain` is that without the layer. In a shift, and with given forces, displacements of the layer count as well.
     pub fn scale(&self, case: &Case, found: &Found, plain: f64) -> f64 {
         let counts = case.slide.motion == CONTACT_NORMAL_MOTION_SHIFT || case.slide.has_forces();
         if !(counts && self.compliance > 0.0) {
@@ -158,7 +170,8 @@ impl Law {
         f64::max(plain + self.compliance * f64::sqrt(tractions / elements), f64::sqrt(displaced / elements))
     }
 
-    /// The element at which the particle of element i was a step before: in rolling the next one in the rolling direction.
+    /// The element at which the particle of element i was before the step: in a shift element i itself, in rolling the next one in the rolling
+    /// direction. None if it was outside the grid.
     pub fn upstream(case: &Case, i: usize) -> Option<usize> {
         let [step, _] = case.slide.step(&case.place.grid);
         let (x, mx) = (i % case.place.grid.mx, case.place.grid.mx);
@@ -169,29 +182,32 @@ impl Law {
         }
     }
 
-    /// The bounds of all elements by the slips of a result, each with its change for a change `delta` of the slip, and the new state of the
-    /// particles.
+    /// The traction bounds of all elements for the slips of a result, and the new state of the particles. Each bound is a pair: the bound, and its
+    /// largest change if the slip changes by `delta`.
     pub fn bounds(&self, case: &Case, found: &Found, before: &Particles, delta: f64) -> (Vec<[f64; 2]>, Particles) {
         let n = found.p.len();
         let is_steady = case.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING;
         let (fresh, mut bounds) = (self.fresh(case), vec![[0.0; 2]; n]);
         let mut after = fresh.clone();
         let backwards = case.slide.step(&case.place.grid)[0] > 0.0;
-        // In steady rolling particles are fresh until they enter the contact.
-        let mut entered = vec![!is_steady; n];
+        // In steady rolling, the state before the step is that after the step at the next element. Particles are fresh until they enter the contact.
+        let mut has_entered = vec![!is_steady; n];
         for k in 0..n {
             let i = if backwards { n - 1 - k } else { k };
-            let of = if is_steady { &after } else { before };
-            let from = Law::upstream(case, i).filter(|&j| entered[j]);
-            let had = from.map_or((fresh.mu[i], fresh.limit[i]), |j| (of.mu[j], of.limit[j]));
-            entered[i] = !is_steady || from.is_some() || found.p[i] > 0.0 && case.slide.mu[i] > 0.0;
-            // Without friction particles are as outside the contact.
+            let previous = if is_steady { &after } else { before };
+            let from = Law::upstream(case, i).filter(|&j| has_entered[j]);
+            let old = from.map_or((fresh.mu[i], fresh.limit[i]), |j| (previous.mu[j], previous.limit[j]));
+            has_entered[i] = !is_steady || from.is_some() || found.p[i] > 0.0 && case.slide.mu[i] > 0.0;
+            // Where mu is 0, particles do not change, as outside the contact.
             let slips =
                 found.p[i] > 0.0 && case.slide.mu[i] > 0.0 && found.stick_slip[i] >= CONTACT_NORMAL_STICK_SLIP_SLIP;
             let slip = if slips { length(found.slip[i]) } else { 0.0 };
-            let at = |slip: f64| self.at(slip, (found.p[i].max(0.0), case.slide.mu[i]), had);
+            let at = |slip: f64| self.bound_mu_and_limit(slip, (found.p[i].max(0.0), case.slide.mu[i]), old);
             let (bound, mu, limit) = at(slip);
-            let change = |slip: f64| (at(slip).0 - bound).abs();
+            let change = |slip: f64| {
+                let (other_bound, ..) = at(slip);
+                (other_bound - bound).abs()
+            };
             bounds[i] = [bound, if slips { change((slip - delta).max(0.0)).max(change(slip + delta)) } else { 0.0 }];
             (after.mu[i], after.limit[i]) = (mu, limit);
         }
@@ -199,10 +215,10 @@ impl Law {
     }
 }
 
-/// The order of an element's influence on itself.
-fn own_influence(case: &Case) -> f64 {
-    let grid = &case.place.grid;
-    let modulus =
-        case.place.effects.coating.as_ref().map_or(case.place.shear_modulus, |coating| coating.at_surface().0);
+/// The order of the influence of an element on itself.
+fn self_influence(case: &Case) -> f64 {
+    let (grid, coating) = (&case.place.grid, case.place.effects.coating.as_ref());
+    let bodies = (case.place.shear_modulus, case.place.poisson_ratio);
+    let (modulus, _) = coating.map_or(bodies, |coating| coating.at_surface());
     (grid.dx * grid.dy).sqrt() / (2.0 * modulus[0])
 }

@@ -1,7 +1,8 @@
-//! Laws of friction and layers that yield, in random scenes. Each result is certified by the campaign's own products and by its own march along the paths of
-//! particles. Its wear, and the temperatures by its heat, are compared with the campaign's own sums.
+//! Solves random scenes with laws of friction and layers that yield, and checks each result. The checks use products of the campaign, and follow the
+//! particles along their paths (`law_case`). Wear, and temperatures by the heat of friction, are compared with sums.
 //!
-//! A result meets two conditions: those of stick and slip with the bounds fixed at |q| (`friction_conditions`), and that `|q|` is the bound of the slip.
+//! A result must meet two conditions: those of stick and slip if the bounds are taken as |q| (`friction_conditions`), and that |q| of slipping
+//! elements is the bound by the law.
 
 use contact_normal::ffi::*;
 
@@ -16,22 +17,22 @@ use crate::law_case::{Law, Particles};
 use crate::random::Random;
 use crate::verdict::Verdict;
 
-/// From this `law_slope` on a solve may end without a certificate (docs/laws.md).
+/// If `law_slope` is at least this number, a solve may end without a certificate (docs/laws.md).
 const STEEP: f64 = 0.5;
 
 /// The result of a case.
 pub struct Run {
     pub case: Case,
     pub law: Law,
-    /// Random numbers for the heat of friction.
+    /// Separate random numbers for further checks.
     heat: Random,
-    /// `law_slope` and status of each call.
+    /// For each call: `law_slope`, and the status.
     pub ends: Vec<(f64, i32)>,
     pub verdict: Verdict,
 }
 
 impl Run {
-    /// The motion and the range of the slope.
+    /// The row of the report in which a call with this `law_slope` counts.
     pub fn kind(&self, slope: f64) -> String {
         let range = match slope {
             slope if slope < STEEP => "below .5",
@@ -39,22 +40,24 @@ impl Run {
             slope if slope < 1.0 => ".7 to 1",
             _ => "1 and more",
         };
-        let law = if self.law.is_one() { "law" } else { "ideal plastic" };
-        let own = if self.case.place.own.is_some() { ", own tables" } else { "" };
-        format!("{}{own}, {law}, branch {}, law_slope {range}", self.case.motion(), self.law.branch)
+        let law = if self.law.depends_on_slip() { "law" } else { "ideal plastic" };
+        let tables = if self.case.place.traction_tables.is_some() { ", own tables" } else { "" };
+        format!("{}{tables}, {law}, branch {}, law_slope {range}", self.case.motion(), self.law.branch)
     }
 }
 
-/// A random case: from rest, then continued by the handle, and by the caller's tractions and particles.
+/// Makes a random case and checks its steps: from rest, then continued by the handle, and continued from the caller's tractions and particles.
 pub fn run(random: &mut Random) -> Run {
     loop {
         let mut place = Place::random(random, false);
         place.shear_modulus[1] = place.shear_modulus[0];
         place.poisson_ratio[1] = place.poisson_ratio[0];
-        // By other random numbers, so that the rest of the case does not change.
-        let own = &mut random.beside(0x1a35);
-        if own.chance(0.25) && place.effects.coating.is_none() && place.own.is_none() && place.surface != "roller" {
-            place.take_tables(own);
+        // A separate sequence of random numbers, so that the rest of the case stays the same.
+        let for_tables = &mut random.beside(0x1a35);
+        let may_have_tables =
+            place.effects.coating.is_none() && place.traction_tables.is_none() && place.surface != "roller";
+        if for_tables.chance(0.25) && may_have_tables {
+            place.take_tables(for_tables);
         }
         let without = frictionless(&place, &Stop::sharp(random));
         if without.status != CONTACT_NORMAL_OK || without.p.iter().all(|p| !(*p > 0.0)) {
@@ -71,6 +74,7 @@ pub fn run(random: &mut Random) -> Run {
 }
 
 impl Run {
+    /// Solves and checks the steps of the case.
     fn steps(&mut self) {
         let (case, law) = (self.case.clone(), self.law.clone());
         let mut handle = match Handle::new(&case.place, &case.stop) {
@@ -89,16 +93,16 @@ impl Run {
         });
         let before = Before { q: first.q.clone(), p: first.p.clone() };
         self.check(&case, &kept, (&before, &particles));
-        // The same step from the caller's tractions and particles. The solve starts elsewhere, so that it may find another one of several solutions. The
-        // yield limits may differ from particle to particle.
+        // The same step, with the caller's tractions and particles. The initial guess differs from that of the handle, so the solve may find another
+        // one of several solutions. The yield limits may differ from particle to particle.
         let particles = self.varied(particles);
-        let mut handed = case.clone();
-        handed.slide.previous = Some([0, 1].map(|k: usize| first.q.iter().map(|q| q[k]).collect()));
-        let found = call_changed(None, (&handed.place, &handed.slide, From::Slide), &case.stop, |friction| {
+        let mut given = case.clone();
+        given.slide.previous = Some([0, 1].map(|k: usize| first.q.iter().map(|q| q[k]).collect()));
+        let found = call_changed(None, (&given.place, &given.slide, From::Slide), &case.stop, |friction| {
             law.put(friction, Some(&particles));
         });
-        self.check(&handed, &found, (&before, &particles));
-        // After few cycles tractions are not converged.
+        self.check(&given, &found, (&before, &particles));
+        // With few cycles the tractions do not converge, but they must be within their bounds.
         let mut short = case.stop.clone();
         short.max_cycles = self.heat.beside(0xc07).integer(1, 12) as i32;
         let found =
@@ -106,7 +110,7 @@ impl Run {
         self.bounded(&found);
     }
 
-    /// Half of the time: yield limits that differ from particle to particle.
+    /// Makes the yield limits differ from particle to particle, with a probability of 1/2.
     fn varied(&mut self, mut particles: Particles) -> Particles {
         let mut random = self.heat.beside(0x11a7);
         if self.law.yield_limit > 0.0 && random.chance(0.5) {
@@ -115,29 +119,31 @@ impl Run {
         particles
     }
 
-    /// With any status >= 0: no traction is longer than mu p, and each element in contact sticks or slips.
+    /// Checks a result with any status >= 0: no traction exceeds mu p, and each element in contact sticks or slips.
     fn bounded(&mut self, found: &Found) {
         if found.status < 0 {
             return;
         }
         let mu = &self.case.slide.mu;
-        let beyond = |i: usize| length(found.q[i]) - mu[i] * found.p[i].max(0.0) * (1.0 + 1e-15);
-        let most = (0..found.q.len()).map(beyond).fold(f64::NEG_INFINITY, f64::max);
-        // With memory, particles keep the coefficient of an earlier place.
+        let excess = |i: usize| length(found.q[i]) - mu[i] * found.p[i].max(0.0) * (1.0 + 1e-15);
+        let most = (0..found.q.len()).map(excess).fold(f64::NEG_INFINITY, f64::max);
+        // With memory, a particle may have a larger coefficient from an earlier place.
         let is_bounded = most <= 0.0 || self.law.memory_distance > 0.0;
         self.unless(is_bounded, "a law keeps tractions within mu p", || format!("status {}: {most:e}", found.status));
-        let of = &found.report.tangential;
-        let (told, touching) = (of.stick_count + of.slip_count, found.p.iter().filter(|p| **p > 0.0).count() as i64);
-        self.unless(told == touching, "stick and slip are the contact", || format!("{told} of {touching}"));
+        let report = &found.report.tangential;
+        let reported = report.stick_count + report.slip_count;
+        let in_contact = found.p.iter().filter(|p| **p > 0.0).count() as i64;
+        self.unless(reported == in_contact, "stick and slip are the contact", || format!("{reported} of {in_contact}"));
     }
 
+    /// Adds a broken promise with a description of the case, unless the promise is `kept`.
     fn unless(&mut self, kept: bool, promise: &'static str, details: impl FnOnce() -> String) {
         let (case, law) = (&self.case, &self.law);
         self.verdict.unless(kept, promise, || format!("{}, {law:?}: {}", case.describe(), details()));
     }
 
-    /// Checks one result. Returns the state of the particles after it if the status is OK.
-    fn check(&mut self, case: &Case, found: &Found, (before, had): (&Before, &Particles)) -> Option<Particles> {
+    /// Checks one result, for the loads and the particles before the step. If the status is OK, returns the state of the particles after it.
+    fn check(&mut self, case: &Case, found: &Found, (before, particles): (&Before, &Particles)) -> Option<Particles> {
         let (status, law, slope) = (found.status, self.law.clone(), found.report.tangential.law_slope);
         self.ends.push((if status < 0 { 0.0 } else { slope }, status));
         if status < 0 {
@@ -169,20 +175,20 @@ impl Run {
             return None;
         }
         let plain = conditions(case, found, before);
-        let (bounds, after) = law.bounds(case, found, had, case.stop.tolerance * plain.scale + plain.rounding);
+        let (bounds, after) = law.bounds(case, found, particles, case.stop.tolerance * plain.scale + plain.rounding);
         self.certify(case, found, before, &bounds);
         Some(after)
     }
 
-    /// Status OK: both conditions.
+    /// Checks both conditions of a result with status OK. `bounds` has the bounds by the law, and their changes within the tolerance.
     fn certify(&mut self, case: &Case, found: &Found, before: &Before, bounds: &[[f64; 2]]) {
         let (law, mut frozen) = (self.law.clone(), case.clone());
         let is_steady = case.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING;
         let q_there = if is_steady { &found.q } else { &before.q };
         let layer = |k: usize| -> Vec<f64> {
             let there = |i: usize| Law::upstream(case, i).map_or(0.0, |j| q_there[j][k]);
-            let own = |i: usize| case.slide.rigid.as_ref().map_or(0.0, |own| own[k][i]);
-            (0..found.q.len()).map(|i| own(i) + law.compliance * (found.q[i][k] - there(i))).collect()
+            let rigid = |i: usize| case.slide.rigid.as_ref().map_or(0.0, |rigid| rigid[k][i]);
+            (0..found.q.len()).map(|i| rigid(i) + law.compliance * (found.q[i][k] - there(i))).collect()
         };
         frozen.slide.rigid = Some([layer(0), layer(1)]);
         let (mut left, mut rest, mut count, mut floor) = (0.0, 0.0, 0.0f64, 0.0f64);
@@ -195,7 +201,7 @@ impl Run {
             }
             let slips = found.stick_slip[i] >= CONTACT_NORMAL_STICK_SLIP_SLIP;
             frozen.slide.mu[i] = if slips { q / p } else { 10.0 * case.slide.mu[i].max(q / p) };
-            // The error of the slip is within the tolerance; `change` is that of the bound by it.
+            // The slip has an error within the tolerance, by which the bound may change by `change`.
             let off = if slips { ((q - bound).abs() - change).max(0.0) } else { (q - bound).max(0.0) };
             left += (off / most).powi(2);
             worst = if off > worst.0 { (off, i) } else { worst };
@@ -235,7 +241,7 @@ impl Run {
         });
     }
 
-    /// Status > 0: excused for the slope, a force, or a branch.
+    /// The excuse of a result with status > 0: a steep law, a force, or a branch.
     fn stopped(&mut self, case: &Case, found: &Found) {
         let slope = found.report.tangential.law_slope;
         let says = found.message.contains("tangential.law_slope is");
@@ -250,7 +256,7 @@ impl Run {
         self.verdict.excuse(why);
     }
 
-    /// Work and depth by sums.
+    /// Compares the frictional work and the depth of wear with sums.
     fn wear(&mut self, case: &Case, found: &Found) {
         let (grid, n) = (case.place.grid, found.q.len());
         let column = |of: &[[f64; 2]], k: usize| of.iter().map(|v| v[k]).collect::<Vec<f64>>();
@@ -277,7 +283,7 @@ impl Run {
             (total, volume, sizes) = (total + exact, volume + worn_off, sizes + size);
         }
         let area = grid.dx * grid.dy;
-        // Sums of up to some hundred numbers.
+        // 1e-13: the round-off of sums of up to some hundred numbers.
         right &= (worn.work - total * area).abs() <= 1e-13 * sizes * area
             && (worn.volume - volume * area).abs() <= 1e-13 * volume * area;
         right &= rows.iter().zip(&passage).all(|(exact, found)| (exact - found).abs() <= 1e-13 * exact);

@@ -1,12 +1,26 @@
-//! The campaign: random scenes through the C ABI of contact-normal. An oracle of the campaign's own certifies each result.
+//! The campaign: random scenes are solved through the C ABI of contact-normal, and each result is checked.
 //!
-//! `case` makes a scene from a seed, `measured` one with a measured surface. `call` solves it with the library, and `operator` (with `half_space`,
-//! `coating` and `fft`) computes products. `rules` has the promises, `verdict` the broken ones and the excuses, and `sequence` the further promises of a
-//! handle. `run` runs a case, and `account` counts the results. `bytes` (with `bytes_friction`) turns random bytes into calls. Some seeds also run
-//! `batch`, `set_influence`, `accuracy` (a ball to an accuracy), `stress` (with `stress_waves`), `adhesion`, and `friction` with its rules, its
-//! coefficients (`tangential`) and its handles (`friction_sequence`). `laws` runs laws of friction (`law_case`), layers that yield, wear, and `flash`
-//! temperatures. `replay` judges the scene of a dump. The campaign uses only the functions of the C ABI and its reader of dumps, so it does not depend on the
-//! core of the library.
+//! The checks use influence coefficients and products of the campaign, not of the library. Together they are called the oracle. The campaign uses
+//! only the functions of the C ABI and its reader of dumps, so it does not depend on the core of the library.
+//!
+//! | modules | what they do |
+//! |---|---|
+//! | `case`, `effects`, `surface`, `scales`, `random` | make a scene from a seed |
+//! | `measured` | makes a scene with a surface like measured ones |
+//! | `call` | solves a scene with the library |
+//! | `operator`, `half_space`, `coating`, `hankel`, `fft` | compute products A p |
+//! | `rules`, `measures` | check the promises of the library for a result |
+//! | `verdict` | broken promises, and excuses of results that are no solution |
+//! | `sequence`, `batch`, `set_influence` | check the further promises of a handle |
+//! | `run`, `account` | run the case of a seed, and count the results |
+//! | `accuracy` | solves to an accuracy |
+//! | `stress`, `stress_waves` | stresses below the surface |
+//! | `adhesion`, `adhesion_case`, `adhesion_call` | scenes with adhesion |
+//! | `friction`, `friction_...`, `slide`, `refused_force`, `tangential`, `tangential_...`, `own_tractions` | scenes with friction |
+//! | `laws`, `law_case`, `flash` | laws of friction, layers that yield, wear, and flash temperatures |
+//! | `relaxing` | viscoelastic bodies |
+//! | `bytes`, `bytes_...` | turn random bytes into calls |
+//! | `replay` | checks the scene of a dump |
 
 pub mod account;
 pub mod accuracy;

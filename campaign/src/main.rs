@@ -1,15 +1,15 @@
-//! Random scenes, each certified: `make campaign N=20000`, or
+//! Solves random scenes, and checks each result: `make campaign N=20000`, or
 //!
 //! ```text
 //! cargo run --release -p campaign -- 20000            cases of seeds 0..20000
-//! cargo run --release -p campaign -- 20000 500000     of seeds 500000..520000
+//! cargo run --release -p campaign -- 20000 500000     cases of seeds 500000..520000
 //! cargo run --release -p campaign -- --measured 5000  cases like measured ones, of seeds 0..5000
-//! cargo run --release -p campaign -- --friction 5000  cases with friction alone, of seeds 0..5000
+//! cargo run --release -p campaign -- --friction 5000  only cases with friction, of seeds 0..5000
 //! cargo run --release -p campaign -- --measured --friction 5000
-//! cargo run --release -p campaign -- --adhesion 5000  cases with adhesion alone, of seeds 0..5000
+//! cargo run --release -p campaign -- --adhesion 5000  only cases with adhesion, of seeds 0..5000
 //! cargo run --release -p campaign -- --laws 5000      laws of friction, layers that yield, wear, of seeds 0..5000
-//! cargo run --release -p campaign -- --relaxing 5000  paths of viscoelastic bodies, of seeds 0..5000
-//! cargo run --release -p campaign -- --seed 17        one case again, with all that is known of it
+//! cargo run --release -p campaign -- --relaxing 5000  paths of loads on viscoelastic bodies, of seeds 0..5000
+//! cargo run --release -p campaign -- --seed 17        the case of one seed, described in full
 //! cargo run --release -p campaign -- --measured --seed 17
 //! cargo run --release -p campaign -- --replay FILE    the scene of a dump (docs/dump.md)
 //! ```
@@ -26,19 +26,19 @@ use contact_normal::ffi::dump::Dump;
 
 fn main() -> ExitCode {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
-    let mut named = |name: &str| {
-        let at = arguments.iter().position(|argument| argument == name);
-        at.map(|at| arguments.remove(at)).is_some()
+    let mut has_option = |name: &str| {
+        let position = arguments.iter().position(|argument| argument == name);
+        position.map(|position| arguments.remove(position)).is_some()
     };
-    if named("--replay") {
-        return dumped(&arguments[0]);
+    if has_option("--replay") {
+        return replay_dump(&arguments[0]);
     }
-    let (is_measured, is_friction, one) = (named("--measured"), named("--friction"), named("--seed"));
-    let (is_adhesive, is_law, is_relaxing) = (named("--adhesion"), named("--laws"), named("--relaxing"));
+    let (is_measured, is_friction, one) = (has_option("--measured"), has_option("--friction"), has_option("--seed"));
+    let (is_adhesive, is_law, is_relaxing) = (has_option("--adhesion"), has_option("--laws"), has_option("--relaxing"));
     let number = |i: usize| arguments.get(i).and_then(|text| text.parse::<u64>().ok());
     let run = if is_measured { measured } else { ordinary };
     if one {
-        return replay(&run(number(0).expect("--seed N: a number")));
+        return describe(&run(number(0).expect("--seed N: a number")));
     }
     let (count, first) = (number(0).unwrap_or(1000), number(1).unwrap_or(0));
     let seeds = first..first + count;
@@ -66,6 +66,7 @@ fn main() -> ExitCode {
     end(account.is_clean())
 }
 
+/// The exit code of the program.
 fn end(is_clean: bool) -> ExitCode {
     if is_clean {
         ExitCode::SUCCESS
@@ -74,11 +75,11 @@ fn end(is_clean: bool) -> ExitCode {
     }
 }
 
-/// Runs the scene of a dump.
-fn dumped(path: &str) -> ExitCode {
+/// Runs and describes the scene of a dump.
+fn replay_dump(path: &str) -> ExitCode {
     let bytes = std::fs::read(path).map_err(|why| why.to_string());
     match bytes.and_then(|bytes| Dump::read(&bytes)).and_then(|dump| campaign::replay::run(&dump)) {
-        Ok(run) => replay(&run),
+        Ok(run) => describe(&run),
         Err(why) => {
             eprintln!("{path}: {why}");
             ExitCode::FAILURE
@@ -86,8 +87,8 @@ fn dumped(path: &str) -> ExitCode {
     }
 }
 
-/// Prints one case in full.
-fn replay(run: &Run) -> ExitCode {
+/// Prints one case and its result in full.
+fn describe(run: &Run) -> ExitCode {
     println!("seed {}: {}", run.case.seed, run.case.describe());
     println!(
         "load {:?}, statuses {:?}, products {:?}, {:.3} s",
@@ -100,23 +101,23 @@ fn replay(run: &Run) -> ExitCode {
     end(run.verdict.failures.is_empty())
 }
 
-/// The calls of a case.
+/// The calls of a case, for the report of one kind of cases.
 struct Calls {
-    /// The kind and the status of each call.
+    /// For each call, the row of the report in which it counts, and its status.
     ends: Vec<(String, i32)>,
-    /// Products of a call of AUTO, if they are counted.
+    /// The products of the first call, if they are counted.
     products: Option<f64>,
     verdict: Verdict,
 }
 
-/// A case with friction, by its motion.
+/// Runs a case with friction. Calls count by their motion and bodies.
 fn friction(seed: u64, is_measured: bool) -> Calls {
     let run = campaign::friction::run(&mut Random::new(seed ^ 0x00f1_c710), is_measured);
     let ends = run.statuses.iter().map(|status| (run.case.kind(), *status)).collect();
     Calls { ends, products: None, verdict: run.verdict }
 }
 
-/// Steps of viscoelastic bodies, by method and effects.
+/// Runs a path of loads on viscoelastic bodies. Calls count by method and effects.
 fn relaxing(seed: u64) -> Calls {
     let run = campaign::relaxing::run(seed);
     let kind = format!("{}, {}", run.case.method(), run.case.effects.name());
@@ -124,21 +125,21 @@ fn relaxing(seed: u64) -> Calls {
     Calls { ends, products: None, verdict: run.verdict }
 }
 
-/// A case with a law of friction, by its motion and the slope of the law.
+/// Runs a case with a law of friction. Calls count by their motion and the slope of the law.
 fn laws(seed: u64) -> Calls {
     let run = campaign::laws::run(&mut Random::new(seed ^ 0x001a_a5e5));
     let ends = run.ends.iter().map(|(slope, status)| (run.kind(*slope), *status)).collect();
     Calls { ends, products: None, verdict: run.verdict }
 }
 
-/// A case with adhesion, and its products.
+/// Runs a case with adhesion. Its products are counted.
 fn adhesion(seed: u64) -> Calls {
     let run = campaign::adhesion::run(&mut Random::new(seed ^ 0x00ad_4e51));
     let ends = run.statuses.iter().map(|status| ("adhesion".to_string(), *status)).collect();
     Calls { ends, products: run.products, verdict: run.verdict }
 }
 
-/// Runs the cases of these seeds, and prints the ends of their calls, their products, and the broken promises.
+/// Runs the cases of these seeds. Prints the broken promises, the counts of statuses, the excuses, and quantiles of the products.
 fn report(seeds: Range<u64>, run: impl Fn(u64) -> Calls) -> ExitCode {
     let (mut ends, mut excuses, mut products, mut failed) = (BTreeMap::new(), Excuses::default(), Vec::new(), false);
     for seed in seeds {
@@ -158,9 +159,9 @@ fn report(seeds: Range<u64>, run: impl Fn(u64) -> Calls) -> ExitCode {
     }
     print!("\n{excuses}");
     products.sort_by(f64::total_cmp);
-    let part = |of: f64| products.get((of * products.len() as f64) as usize);
-    if let (Some(half), Some(most), Some(all)) = (part(0.5), part(0.9), part(0.99)) {
-        println!("\nproducts: median {half:.1}, 90 % {most:.1}, 99 % {all:.1}");
+    let quantile = |part: f64| products.get((part * products.len() as f64) as usize);
+    if let (Some(median), Some(ninety), Some(ninety_nine)) = (quantile(0.5), quantile(0.9), quantile(0.99)) {
+        println!("\nproducts: median {median:.1}, 90 % {ninety:.1}, 99 % {ninety_nine:.1}");
     }
     end(!failed)
 }

@@ -1,40 +1,41 @@
-//! u = A p for every effect, and its possible round-off: direct sums, or for long products the campaign's own transform.
+//! Products u = A p with the coefficients of the campaign, for every effect, and their possible round-off. Short products are direct sums; long ones
+//! use the Fourier transform of the campaign.
 
 use std::cell::OnceCell;
 
-use crate::effects::{Effects, OwnCoefficients, Values};
+use crate::effects::{Effects, UserCoefficients, Values};
 use crate::fft::Convolution;
 use crate::grid::Grid;
 use crate::half_space::{free, periodic, Quadrant};
 
-/// The source of the coefficients.
+/// The influence coefficients, without patches and layers.
 enum Coefficients<'a> {
     HalfSpace(Quadrant),
-    Table(&'a OwnCoefficients),
-    RowTables(&'a OwnCoefficients),
+    Table(&'a UserCoefficients),
+    RowTables(&'a UserCoefficients),
 }
 
-/// The operator A.
+/// The matrix A of a scene.
 pub struct Operator<'a> {
     grid: Grid,
     effects: &'a Effects,
     coefficients: Coefficients<'a>,
-    /// The 2-norm of all coefficients in a transform of the operator.
+    /// The 2-norm of all coefficients of a transform.
     norm: f64,
-    /// Made for the first long product.
+    /// The transform of the coefficients, which the first long product makes.
     convolution: OnceCell<Convolution>,
 }
 
-/// Products with more terms use the transform.
+/// Products with more terms than this use the transform.
 const LONG: usize = 2_000_000;
 
 impl<'a> Operator<'a> {
-    /// The operator of a scene's effects; `c` is the compliance of the bodies over pi.
+    /// The matrix of a scene with these effects, on bodies with the compliance `c = 1/(pi E*)`.
     pub fn new(grid: &Grid, c: f64, effects: &'a Effects) -> Operator<'a> {
         let Grid { mx, my, dx, dy } = *grid;
         let coefficients = match (&effects.influence, &effects.row_tables, effects.period) {
-            (Some(own), ..) => Coefficients::Table(own),
-            (_, Some(own), _) => Coefficients::RowTables(own),
+            (Some(table), ..) => Coefficients::Table(table),
+            (_, Some(tables), _) => Coefficients::RowTables(tables),
             _ if effects.coating.is_some() => {
                 let coating = effects.coating.as_ref().expect("a coating");
                 Coefficients::HalfSpace(coating.coefficients(grid, effects.period))
@@ -44,29 +45,29 @@ impl<'a> Operator<'a> {
         };
         let values = match &coefficients {
             Coefficients::HalfSpace(quadrant) => &quadrant.values,
-            Coefficients::Table(own) | Coefficients::RowTables(own) => &own.values,
+            Coefficients::Table(user) | Coefficients::RowTables(user) => &user.values,
         };
-        // The norm of four quadrants.
+        // A quadrant has a quarter of the coefficients; those of all four have twice its norm. For tables this is an upper bound.
         let norm = 2.0 * values.iter().map(|v| v * v).sum::<f64>().sqrt();
         Operator { grid: *grid, effects, coefficients, norm, convolution: OnceCell::new() }
     }
 
-    /// The self-influence of the middle element, with its layer.
+    /// The influence of the middle element on itself, including its layer.
     pub fn diagonal(&self) -> f64 {
         let (ix, iy) = (self.grid.mx / 2, self.grid.my / 2);
         let layer = self.effects.layer.as_ref().map_or(0.0, |layer| layer.at(iy * self.grid.mx + ix));
         let mut row = vec![0.0; self.grid.mx];
         self.add(ix, iy, iy, 1.0, &mut row);
-        let own = row[ix] + layer;
-        // A single element with two periods has no displacement.
-        if own > 0.0 {
-            own
+        let self_influence = row[ix] + layer;
+        // A single element with two periods has no displacement. Then the influence without a period and with c = 1 is returned.
+        if self_influence > 0.0 {
+            self_influence
         } else {
             free(1, 1, self.grid.dx, self.grid.dy, 1.0).at(0, 0)
         }
     }
 
-    /// Adds the displacements of row iy by a pressure on `(jx, jy)`.
+    /// Adds the displacements of the elements in row iy by a pressure on element `(jx, jy)` to `row`.
     fn add(&self, jx: usize, jy: usize, iy: usize, pressure: f64, row: &mut [f64]) {
         let mx = self.grid.mx;
         match &self.coefficients {
@@ -76,18 +77,18 @@ impl<'a> Operator<'a> {
                 left.iter_mut().zip(values[..=jx].iter().rev()).for_each(|(u, a)| *u += a * pressure);
                 right.iter_mut().zip(values).for_each(|(u, a)| *u += a * pressure);
             }
-            Coefficients::Table(own) => {
-                let start = (iy + own.cy - jy) * 2 * own.cx + own.cx - jx;
-                row.iter_mut().zip(&own.values[start..]).for_each(|(u, a)| *u += a * pressure);
+            Coefficients::Table(table) => {
+                let start = (iy + table.cy - jy) * 2 * table.cx + table.cx - jx;
+                row.iter_mut().zip(&table.values[start..]).for_each(|(u, a)| *u += a * pressure);
             }
-            Coefficients::RowTables(own) => {
-                let start = (jy * own.cy + iy) * 2 * own.cx + own.cx - jx;
-                row.iter_mut().zip(&own.values[start..]).for_each(|(u, a)| *u += a * pressure);
+            Coefficients::RowTables(tables) => {
+                let start = (jy * tables.cy + iy) * 2 * tables.cx + tables.cx - jx;
+                row.iter_mut().zip(&tables.values[start..]).for_each(|(u, a)| *u += a * pressure);
             }
         }
     }
 
-    /// The product u = A p.
+    /// Computes the product u = A p.
     pub fn displace(&self, p: &[f64]) -> Vec<f64> {
         let mut u = if self.is_long(p) { self.by_transform(p) } else { self.by_sums(p) };
         if let Some(layer) = &self.effects.layer {
@@ -96,12 +97,13 @@ impl<'a> Operator<'a> {
         u
     }
 
-    /// Whether the product uses the transform. Tables per row are no convolution.
+    /// Whether a product uses the transform. Row tables never do, because their product is no convolution in y.
     fn is_long(&self, p: &[f64]) -> bool {
         let terms = p.iter().filter(|p| **p != 0.0).count() * p.len();
         terms > LONG && !matches!(self.coefficients, Coefficients::RowTables(_))
     }
 
+    /// Computes a product without layers by direct sums.
     fn by_sums(&self, p: &[f64]) -> Vec<f64> {
         let Grid { mx, my, .. } = self.grid;
         let mut u = vec![0.0; p.len()];
@@ -123,31 +125,32 @@ impl<'a> Operator<'a> {
         u
     }
 
-    /// A product by transforms; with patches one for the loads of each patch.
+    /// Computes a product without layers by the transform. With patches, the loads of each patch have a product of their own.
     fn by_transform(&self, p: &[f64]) -> Vec<f64> {
         let Grid { mx, my, .. } = self.grid;
         let convolution = self.convolution.get_or_init(|| match &self.coefficients {
             Coefficients::HalfSpace(quadrant) => Convolution::new(mx, my, |kx, ky| quadrant.at(kx, ky)),
-            Coefficients::Table(own) => Convolution::new(mx, my, |kx, ky| {
-                own.values[(ky + own.cy as i64) as usize * 2 * own.cx + (kx + own.cx as i64) as usize]
+            Coefficients::Table(table) => Convolution::new(mx, my, |kx, ky| {
+                table.values[(ky + table.cy as i64) as usize * 2 * table.cx + (kx + table.cx as i64) as usize]
             }),
-            Coefficients::RowTables(_) => unreachable!("tables per row are no convolution"),
+            Coefficients::RowTables(_) => unreachable!("row tables are no convolution"),
         });
         let Some(patches) = &self.effects.patches else { return convolution.of(p) };
         let mut u = vec![0.0; p.len()];
         for patch in 0..patches.count {
-            let of_patch = |(p, &of): (&f64, &i32)| if of as usize == patch { *p } else { 0.0 };
-            let loads: Vec<f64> = p.iter().zip(&patches.patch).map(of_patch).collect();
+            let load = |(p, &its_patch): (&f64, &i32)| if its_patch as usize == patch { *p } else { 0.0 };
+            let loads: Vec<f64> = p.iter().zip(&patches.patch).map(load).collect();
             let factors = &patches.factors[patch * patches.count..];
-            let by = convolution.of(&loads);
-            u.iter_mut().zip(&by).zip(&patches.patch).for_each(|((u, v), &of)| *u += factors[of as usize] * v);
+            let displaced = convolution.of(&loads);
+            let elements = u.iter_mut().zip(&displaced).zip(&patches.patch);
+            elements.for_each(|((u, v), &its_patch)| *u += factors[its_patch as usize] * v);
         }
         u
     }
 
-    /// The possible round-off of a displacement: of the campaign's coefficients and `n` terms, and of the library's product by FFT. The error of the
-    /// latter is at most some units of round-off times log2 of its length times the 2-norms of both factors (Higham, Accuracy and Stability of
-    /// Numerical Algorithms, section 24.1).
+    /// The possible round-off of a displacement. It includes that of the campaign's coefficients, and that of the library's product by FFT. The
+    /// latter is at most some units of round-off, times log2 of the length of the transform, times the 2-norms of both factors (Higham, Accuracy and
+    /// Stability of Numerical Algorithms, section 24.1).
     pub fn rounding(&self, p: &[f64]) -> f64 {
         let (sum, squares) = p.iter().fold((0.0, 0.0), |(sum, squares), p| (sum + p.abs(), squares + p * p));
         let coefficients = match &self.coefficients {
@@ -160,10 +163,10 @@ impl<'a> Operator<'a> {
             None => 0.0,
         };
         let largest = p.iter().fold(0.0, |largest: f64, p| largest.max(p.abs()));
-        // Twice that if the campaign also uses its transform.
+        // If the campaign uses its transform as well, both transforms have errors.
         let transforms = if self.is_long(p) { 2.0 } else { 1.0 };
         let steps = transforms * (4.0 + (4.0 * p.len() as f64).log2());
-        // A layer of the same value everywhere is a part of the coefficients.
+        // The library may add a layer of the same compliance everywhere to the coefficients.
         let norms = (self.norm + layer) * squares.sqrt();
         let rounding = coefficients * sum + f64::EPSILON * (4.0 * steps * norms + layer * largest);
         // The norm of coefficients near the largest double overflows.
@@ -174,11 +177,12 @@ impl<'a> Operator<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::Definiteness;
     use crate::random::Random;
 
     const GRID: Grid = Grid { mx: 5, my: 4, dx: 0.5, dy: 0.7 };
 
-    /// A table and row tables of the half-space have the displacements of the half-space.
+    /// A table and row tables with the coefficients of the half-space have the displacements of the half-space.
     #[test]
     fn the_three_kinds_of_coefficients_agree() {
         let Grid { mx, my, dx, dy } = GRID;
@@ -190,10 +194,10 @@ mod tests {
         let (cx, cy) = (mx as i64 + 1, my as i64);
         let offsets = (-cy..cy).flat_map(|ky| (-cx..cx).map(move |kx| (kx, ky)));
         let values = offsets.map(|(kx, ky)| quadrant.at(kx, ky)).collect();
-        let table = OwnCoefficients { cx: mx + 1, cy: my, values };
+        let table = UserCoefficients { cx: mx + 1, cy: my, values };
         let pairs = (0..my * my).flat_map(|k| (-cx..cx).map(move |kx| (kx, (k % my).abs_diff(k / my) as i64)));
         let values = pairs.map(|(kx, ky)| quadrant.at(kx, ky)).collect();
-        let row_tables = OwnCoefficients { cx: mx + 1, cy: my, values };
+        let row_tables = UserCoefficients { cx: mx + 1, cy: my, values };
         for effects in [
             Effects { influence: Some(table), ..Effects::default() },
             Effects { row_tables: Some(row_tables), ..Effects::default() },
@@ -204,13 +208,13 @@ mod tests {
         }
     }
 
-    /// Products by the transform are the direct sums, with patches and an unsymmetric table.
+    /// Products by the transform are the direct sums, also with patches, an unsymmetric table, or a period.
     #[test]
     fn the_transform_does_the_direct_sums() {
         let mut random = Random::new(3);
         let grid = Grid { mx: 30, my: 17, dx: 0.5, dy: 0.7 };
         let p: Vec<f64> = (0..grid.len()).map(|_| random.uniform()).collect();
-        let table = crate::effects::table(&mut random, &grid, 1.0, (true, false));
+        let table = crate::effects::table(&mut random, &grid, 1.0, Definiteness::Unsymmetric);
         let patches = crate::effects::patches(&mut random, &grid);
         for effects in [
             Effects::default(),
@@ -226,7 +230,7 @@ mod tests {
         }
     }
 
-    /// Patches and a layer by their formulas, element by element.
+    /// Compares a product with patches and a layer with their formulas, element by element.
     #[test]
     fn patches_and_a_layer_enter_as_their_formulas_say() {
         let mut random = Random::new(2);

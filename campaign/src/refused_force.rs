@@ -1,19 +1,22 @@
-//! Refused forces on unlike bodies: tractions change the pressures, so that no closed form gives the greatest force. No creepage may carry more than
-//! a refused force.
+//! Checks refused tangential forces on unlike bodies. Tractions change the pressures of unlike bodies, so no closed form gives the largest force. If
+//! the library refuses a force, no creepage may carry a larger one.
 
 use contact_normal::ffi::*;
 
 use crate::friction_call::{call, frictionless};
 use crate::friction_case::Case;
 
-/// The decades of the creepages that are tried, from a hundredth to a thousand times the displacement of full slip, and their number per decade.
-const DECADES: (i32, i32) = (-2, 3);
-const A_DECADE: i32 = 8;
-/// A force counts as reached if it is exceeded by this part, in addition to the tolerances of two solves: previous tractions may differ.
-const MORE: f64 = 1e-3;
+/// The creepages that are tried are 10^-2 to 10^3 times one of the order of full slip.
+const FIRST_DECADE: i32 = -2;
+const LAST_DECADE: i32 = 3;
+/// The number of creepages per decade.
+const PER_DECADE: i32 = 8;
+/// A force counts as exceeded if the other one is larger by this part, in addition to the tolerances of two solves. Both solves may differ in their
+/// previous tractions.
+const MARGIN: f64 = 1e-3;
 
-/// A creepage that carries more than the given force in one direction, and its force. None: there is no such creepage, or the question does not
-/// arise.
+/// Searches for a creepage that carries more than the given force in one direction. Returns this creepage and its force. None if no creepage carries
+/// more, or if the case is not one that can be decided: not exactly one force is given, the force is 0, or the solve has few cycles or is cancelled.
 pub fn exceeded(case: &Case) -> Option<(f64, f64)> {
     let Case { place, slide, stop, .. } = case;
     let k = match [0, 1].map(|k| slide.is_force(k)) {
@@ -26,12 +29,13 @@ pub fn exceeded(case: &Case) -> Option<(f64, f64)> {
         return None;
     }
     let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    // The creepage at which the rigid slip is mu times the largest normal displacement. Most contacts slip as a whole at a creepage of this order.
     let full = largest(&slide.mu) * largest(&frictionless(place, stop).u) / slide.length(&place.grid);
     let mut trial = slide.clone();
     trial.prescribed[k] = CONTACT_NORMAL_PRESCRIBED_CREEPAGE;
-    let most = wanted.abs() * (1.0 + MORE + 10.0 * stop.tolerance);
-    (DECADES.0 * A_DECADE..=DECADES.1 * A_DECADE).find_map(|j| {
-        trial.amount[k] = -wanted.signum() * full * 10f64.powf(f64::from(j) / f64::from(A_DECADE));
+    let most = wanted.abs() * (1.0 + MARGIN + 10.0 * stop.tolerance);
+    (FIRST_DECADE * PER_DECADE..=LAST_DECADE * PER_DECADE).find_map(|j| {
+        trial.amount[k] = -wanted.signum() * full * 10f64.powf(f64::from(j) / f64::from(PER_DECADE));
         let found = call(place, &trial, stop);
         let area = place.grid.dx * place.grid.dy;
         let force = wanted.signum() * found.q.iter().map(|q| q[k]).sum::<f64>() * area;

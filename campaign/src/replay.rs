@@ -1,4 +1,4 @@
-//! A case from the dump of a call (`options->dump`), checked by the campaign's own oracles.
+//! Makes a case from the dump of a call (`options->dump`), solves it and checks the result.
 
 use contact_normal::ffi::dump::Dump;
 use contact_normal::ffi::*;
@@ -6,13 +6,13 @@ use contact_normal::ffi::*;
 use crate::call;
 use crate::case::{Case, How};
 use crate::coating::{Coating, Layer};
-use crate::effects::{Effects, OwnCoefficients, Patches, Values};
+use crate::effects::{Definiteness, Effects, Patches, UserCoefficients, Values};
 use crate::grid::{Grid, Load};
 use crate::run::Run;
 use crate::verdict::Verdict;
 use crate::{rules, surface};
 
-/// Solves the scene of a dump again, with the start of its call, and checks the result.
+/// Solves the scene of a dump again, from the same initial guess, and checks the result.
 pub fn run(dump: &Dump) -> Result<Run, String> {
     let case = case(dump)?;
     let found = call::solve(&case);
@@ -22,6 +22,7 @@ pub fn run(dump: &Dump) -> Result<Run, String> {
     Ok(Run { case, statuses: vec![found.status], beside: None, verdict, products: None, seconds: 0.0 })
 }
 
+/// The case of a dump. Scenes with friction are refused.
 fn case(dump: &Dump) -> Result<Case, String> {
     let scene = dump.scene().ok_or("there is no scene")?;
     let read = Reader(dump);
@@ -56,17 +57,18 @@ fn case(dump: &Dump) -> Result<Case, String> {
 struct Reader<'a>(&'a Dump);
 
 impl Reader<'_> {
-    /// `count` values, or any number of them.
+    /// The array of `count` doubles at an address of the scene; `name` is for messages.
     fn doubles(&self, name: &str, at: *const f64, count: Option<usize>) -> Result<Vec<f64>, String> {
         let values = count.and_then(|count| self.0.doubles_at(at, count));
         values.ok_or_else(|| format!("{name} is not in the file, or shorter than the grid asks for"))
     }
 
+    /// The array of `count` integers at an address of the scene; `name` is for messages.
     fn integers(&self, name: &str, at: *const i32, count: usize) -> Result<Vec<i32>, String> {
         self.0.integers_at(at, count).ok_or_else(|| format!("{name} is not in the file, or shorter than it should be"))
     }
 
-    /// One value, or one for each element.
+    /// The value `one` for all elements or, if `each` is not NULL, an array with one value for each element.
     fn values(&self, name: &str, one: f64, each: *const f64, grid: &Grid) -> Result<Values, String> {
         if each.is_null() {
             return Ok(Values::Uniform(one));
@@ -74,6 +76,7 @@ impl Reader<'_> {
         Ok(Values::PerElement(self.doubles(name, each, Some(grid.len()))?))
     }
 
+    /// The effects of the scene.
     fn effects(&self, scene: &contact_normal_scene, grid: &Grid) -> Result<Effects, String> {
         let mut effects = Effects::default();
         // SAFETY (all): NULL, or structs of the dump.
@@ -95,38 +98,47 @@ impl Reader<'_> {
             let patch = self.integers("patches->patch", patches.patch, grid.len())?;
             effects.patches = Some(Patches { count, patch, factors });
         }
-        if let Some(own) = influence {
-            let (cx, cy) = (own.cx.max(0) as usize, own.cy.max(0) as usize);
-            effects.influence = Some(self.own("influence", own.coefficients, own.scale, (cx, cy, cx * cy * 4))?);
+        if let Some(table) = influence {
+            let (cx, cy) = (table.cx.max(0) as usize, table.cy.max(0) as usize);
+            effects.influence =
+                Some(self.user_coefficients("influence", table.coefficients, table.scale, (cx, cy, cx * cy * 4))?);
         }
-        if let Some(own) = row_tables {
-            let (cx, rows) = (own.cx.max(0) as usize, own.rows.max(0) as usize);
-            effects.row_tables =
-                Some(self.own("row_tables", own.coefficients, own.scale, (cx, rows, rows * rows * cx * 2))?);
+        if let Some(tables) = row_tables {
+            let (cx, rows) = (tables.cx.max(0) as usize, tables.rows.max(0) as usize);
+            effects.row_tables = Some(self.user_coefficients(
+                "row_tables",
+                tables.coefficients,
+                tables.scale,
+                (cx, rows, rows * rows * cx * 2),
+            )?);
         }
         if let Some(values) = self.0.doubles("handle.influence") {
-            effects.influence = Some(OwnCoefficients { cx: grid.mx, cy: grid.my, values });
+            effects.influence = Some(UserCoefficients { cx: grid.mx, cy: grid.my, values });
         }
         if let Some(values) = self.0.doubles("handle.row_tables") {
-            effects.row_tables = Some(OwnCoefficients { cx: grid.mx, cy: grid.my, values });
+            effects.row_tables = Some(UserCoefficients { cx: grid.mx, cy: grid.my, values });
         }
-        // The oracle does not decide whether they are those of an elastic body.
-        effects.unsymmetric = effects.influence.is_some() || effects.row_tables.is_some();
+        // The campaign does not decide whether the coefficients of a dump are those of an elastic body. So failures of the solver are excused.
+        if effects.influence.is_some() || effects.row_tables.is_some() {
+            effects.definiteness = Definiteness::Unsymmetric;
+        }
         effects.coating = coating(scene);
         Ok(effects)
     }
 
-    fn own(
+    /// The coefficients of a table, or of row tables, times their scale.
+    fn user_coefficients(
         &self,
         name: &str,
         at: *const f64,
         scale: f64,
         (cx, cy, count): (usize, usize, usize),
-    ) -> Result<OwnCoefficients, String> {
+    ) -> Result<UserCoefficients, String> {
         let values = self.doubles(name, at, Some(count))?;
-        Ok(OwnCoefficients { cx, cy, values: values.iter().map(|value| scale * value).collect() })
+        Ok(UserCoefficients { cx, cy, values: values.iter().map(|value| scale * value).collect() })
     }
 
+    /// The options of the call.
     fn how(&self, grid: &Grid) -> Result<How, String> {
         let options = self.0.options().copied().unwrap_or_default();
         // SAFETY: NULL, or a struct of the dump.
@@ -159,6 +171,7 @@ impl Reader<'_> {
     }
 }
 
+/// The coating of a scene, if it has one.
 fn coating(scene: &contact_normal_scene) -> Option<Coating> {
     // SAFETY: NULL, or structs of the dump.
     let layers = scene.coating.map(|layer| unsafe { layer.as_ref() });

@@ -1,18 +1,20 @@
-//! The rules for every result, by an oracle that is independent of the library.
+//! The promises of the library for every result, checked with the campaign's own matrix A, which is independent of the library.
 
 use contact_normal::ffi::*;
 
 use crate::call::Outputs;
 use crate::case::Case;
+use crate::effects::Definiteness;
 use crate::grid::Load;
 use crate::measures::{pairwise, Measures};
 use crate::verdict::{Failure, Verdict};
 
+/// One broken promise, as a list.
 fn failure(promise: &'static str, details: String) -> Vec<Failure> {
     vec![Failure { promise, details }]
 }
 
-/// Checks a result: the broken promises, and the excuse of a result that is no solution.
+/// Checks a result. The verdict has the broken promises and, for a result that is no solution, the excuse.
 pub fn check(case: &Case, found: &Outputs) -> Verdict {
     if found.status < 0 {
         return refused(case, found);
@@ -28,15 +30,16 @@ pub fn check(case: &Case, found: &Outputs) -> Verdict {
     }
 }
 
-/// The excuse of a solve that stops early; AUTO has none for an elastic body.
+/// The excuse of a solve that stopped early, if it has one. AUTO has none for elastic bodies, unless the solve was cancelled or had few cycles, or
+/// only round-off is left.
 fn excuse(case: &Case, found: &Outputs, m: &Measures) -> Option<&'static str> {
-    let how = &case.how;
+    let (how, definiteness) = (&case.how, case.effects.definiteness);
     match found.status {
         CONTACT_NORMAL_CANCELLED => Some("cancelled by the callback"),
         CONTACT_NORMAL_ITERATION_LIMIT if !how.is_unhindered() => Some("few cycles were given, and used up"),
         _ if !how.is_unhindered() => Some("stagnated within few cycles"),
-        _ if case.effects.indefinite => Some("stopped early: coefficients of no elastic body"),
-        _ if case.effects.unsymmetric => Some("stopped early: coefficients that are not symmetric"),
+        _ if definiteness == Definiteness::Indefinite => Some("stopped early: coefficients of no elastic body"),
+        _ if definiteness == Definiteness::Unsymmetric => Some("stopped early: coefficients that are not symmetric"),
         _ if m.holds_to_rounding(case, found) => Some("stagnated where round-off is left"),
         _ => match how.method {
             CONTACT_NORMAL_METHOD_NORM => Some("NORM stopped early"),
@@ -48,24 +51,26 @@ fn excuse(case: &Case, found: &Outputs, m: &Measures) -> Option<&'static str> {
     }
 }
 
-/// Whether the residuals of the conditions are round-off.
+/// Whether the contact conditions hold to the tolerance plus round-off, so that no solver could do better.
 pub fn is_at_rounding(case: &Case, found: &Outputs) -> bool {
     Measures::of(case, found).holds_to_rounding(case, found)
 }
 
-/// The rules for pressures whose problem changed after they were found: finite values, bounds, u = A p.
+/// Checks pressures whose problem has changed since they were computed: values are finite and within their bounds, and u = A p. Other conditions need
+/// not hold.
 pub fn is_admissible(case: &Case, found: &Outputs) -> Vec<Failure> {
     let mut failures = sound(case, found);
     if failures.is_empty() {
         let m = Measures::of(case, found);
-        if !(m.wrong_u <= m.rounding) {
-            failures.extend(failure("u is A p", format!("off by {:.2e}, rounding is {:.2e}", m.wrong_u, m.rounding)));
+        if !(m.error_of_u <= m.rounding) {
+            failures
+                .extend(failure("u is A p", format!("off by {:.2e}, rounding is {:.2e}", m.error_of_u, m.rounding)));
         }
     }
     failures
 }
 
-/// Checks the values of a result with status >= 0, without requiring success.
+/// Checks a result with status >= 0. It need not be a solution, but its values and its status must be true.
 pub fn is_true(case: &Case, found: &Outputs) -> Vec<Failure> {
     let mut failures = sound(case, found);
     if !failures.is_empty() {
@@ -73,13 +78,13 @@ pub fn is_true(case: &Case, found: &Outputs) -> Vec<Failure> {
     }
     let m = Measures::of(case, found);
     let sizes = m.text(found);
-    if !(m.wrong_u <= m.rounding) {
-        failures.extend(failure("u is A p", format!("off by {:.2e}, rounding is {:.2e}", m.wrong_u, m.rounding)));
+    if !(m.error_of_u <= m.rounding) {
+        failures.extend(failure("u is A p", format!("off by {:.2e}, rounding is {:.2e}", m.error_of_u, m.rounding)));
     }
-    if !(m.wrong_e <= 0.0) {
+    if !(m.excess_error_of_e <= 0.0) {
         failures.extend(failure(
             "e is h - approach + u",
-            format!("off by {:.2e}, {sizes}, {} in contact", m.wrong_e, m.count),
+            format!("off by {:.2e} more than round-off, {sizes}, {} in contact", m.excess_error_of_e, m.count),
         ));
     }
     if found.status == CONTACT_NORMAL_OK {
@@ -90,7 +95,7 @@ pub fn is_true(case: &Case, found: &Outputs) -> Vec<Failure> {
     failures
 }
 
-/// Checks finite values, no tension, limits to the last bit, and no pressure outside C.
+/// Checks that all values are finite, that pressures are not negative and within their limits to the last bit, and that there are none outside C.
 fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
     let n = case.grid.len();
     let status = found.status;
@@ -146,7 +151,7 @@ fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
     if !(0..n).all(known) {
         failures.extend(failure("contact says what an element is", format!("status {status}")));
     }
-    // An element without a surface has no pressure, whatever its code is.
+    // An excluded element (h infinite) has no pressure, whatever its code in `contact` is.
     if (0..n).any(|i| case.h[i].is_infinite() && found.p[i] != 0.0) {
         failures.extend(failure("p = 0 where there is no surface", format!("status {status}")));
     }
@@ -183,13 +188,13 @@ fn solved(case: &Case, found: &Outputs, m: &Measures, sizes: &str) -> Vec<Failur
             failures.extend(failure("OK: violation", sizes.into()));
         }
         let pressures = found.p.iter().sum::<f64>();
-        if !fixed && !(m.work.0 <= tolerance * (1.0 + 1e-9) * m.work.1 + m.rounding * pressures) {
-            failures.extend(failure("OK: complementarity", format!("{:.2e}", m.work.0 / m.work.1)));
+        if !fixed && !(m.complementarity <= tolerance * (1.0 + 1e-9) * m.elastic_work + m.rounding * pressures) {
+            failures.extend(failure("OK: complementarity", format!("{:.2e}", m.complementarity / m.elastic_work)));
         }
     }
     if let Load::Force(prescribed) = case.load {
         let force = pairwise(&found.p) * case.grid.element_area();
-        // With tension on a fixed area the sum cancels.
+        // On a fixed area pressures may be negative, and cancel in the force. So the error is relative to the sum of |p|.
         let sizes: Vec<f64> = found.p.iter().map(|p| p.abs()).collect();
         let size = pairwise(&sizes) * case.grid.element_area();
         if !((force - prescribed).abs() <= 1e-12 * size.max(prescribed)) {
@@ -200,7 +205,7 @@ fn solved(case: &Case, found: &Outputs, m: &Measures, sizes: &str) -> Vec<Failur
         let details = format!("reported {:.2e}, no element in contact", found.report.normal.residual);
         failures.extend(failure("the report's residual is the residual", details));
     }
-    // Two sums of the same numbers, and a residual whose e has round-off.
+    // Both residuals are norms of the same e, added in different orders (1e-9). Each e has round-off.
     let rounding = m.rounding * m.count.sqrt() / m.distance;
     if m.distance > 0.0 && !((found.report.normal.residual - m.relative()).abs() <= rounding + 1e-9 * m.relative()) {
         let details = format!("reported {:.2e}, {sizes}", found.report.normal.residual);
@@ -209,11 +214,11 @@ fn solved(case: &Case, found: &Outputs, m: &Measures, sizes: &str) -> Vec<Failur
     failures
 }
 
-/// Checks a result with status > 0: the best iterate.
+/// Checks a result with status > 0. It is the best iterate.
 fn stopped(case: &Case, found: &Outputs, m: &Measures) -> Vec<Failure> {
     let status = found.status;
     let mut failures = Vec::new();
-    // p = 0 has a residual of 1 over any C.
+    // With p = 0, e is `h - approach`, and the relative residual is 1 over any C.
     if matches!(case.load, Load::Approach(_)) && !m.residual_holds(1.0) {
         failures.extend(failure("stopped: no worse than p = 0", m.text(found)));
     }
@@ -223,38 +228,37 @@ fn stopped(case: &Case, found: &Outputs, m: &Measures) -> Vec<Failure> {
     failures
 }
 
-/// Checks a refusal, with status < 0.
+/// Checks a result with status < 0: the library refused the call.
 fn refused(case: &Case, found: &Outputs) -> Verdict {
     let mut verdict = Verdict::default();
-    let told = || format!("{}: {}", found.status, found.message);
-    verdict.unless(!found.written, "refused: outputs untouched", told);
-    verdict.unless(!found.message.is_empty(), "refused: a message", told);
+    let details = || format!("{}: {}", found.status, found.message);
+    verdict.unless(!found.written, "refused: outputs untouched", details);
+    verdict.unless(!found.message.is_empty(), "refused: a message", details);
     match reason(case, found.status) {
         Some(why) => verdict.excuse(why),
-        None => verdict.fail("refused without a reason", told()),
+        None => verdict.fail("refused without a reason", details()),
     }
     verdict
 }
 
-/// The reason of the scene to be refused with this status, if it has one.
+/// The reason for which the library may refuse this scene with this status, if there is one.
 pub fn reason(case: &Case, status: i32) -> Option<&'static str> {
     let (effects, how) = (&case.effects, &case.how);
     let multigrid = [CONTACT_NORMAL_METHOD_MULTIGRID, CONTACT_NORMAL_METHOD_FULL_MULTIGRID].contains(&how.method);
     let cg = how.method == CONTACT_NORMAL_METHOD_PROJECTED_CG;
+    let is_definite = effects.definiteness == Definiteness::PositiveDefinite;
     let reasons: &[(bool, &'static str)] = match status {
         CONTACT_NORMAL_UNSUPPORTED => &[
             (effects.is_unsupported_pair(), "refused: a pair of effects"),
             (how.fixed.is_some() && effects.limit.is_some(), "refused: a fixed area with a limit"),
             (multigrid && effects.may_lack_multigrid(), "refused: an effect without multigrid"),
-            (cg && (effects.unsymmetric || effects.indefinite), "refused: PROJECTED_CG of what is not symmetric"),
+            (cg && !is_definite, "refused: PROJECTED_CG of what is not symmetric"),
         ],
         CONTACT_NORMAL_INFEASIBLE => &[
             (exceeds_limit(case), "refused: more force than the limit carries"),
             (is_in_full_contact(case), "refused: two periods in full contact, by approach"),
         ],
-        CONTACT_NORMAL_NOT_POSITIVE_DEFINITE => {
-            &[(effects.indefinite || effects.unsymmetric, "refused: coefficients of no elastic body")]
-        }
+        CONTACT_NORMAL_NOT_POSITIVE_DEFINITE => &[(!is_definite, "refused: coefficients of no elastic body")],
         // The library may refuse a guess with negative pressures.
         CONTACT_NORMAL_INVALID_ARGUMENT => {
             let negative = how.given.as_ref().is_some_and(|given| given.iter().any(|&p| p < 0.0));
@@ -265,7 +269,7 @@ pub fn reason(case: &Case, status: i32) -> Option<&'static str> {
     reasons.iter().find(|(holds, _)| *holds).map(|(_, why)| *why)
 }
 
-/// Whether no pressures within the limit carry the force. The library adds the numbers in another order.
+/// Whether the force is larger than the limit allows on all elements together. 1e-9: the library adds the limits in another order.
 fn exceeds_limit(case: &Case) -> bool {
     let Load::Force(force) = case.load else { return false };
     case.effects.limit.as_ref().is_some_and(|limit| {
@@ -274,7 +278,8 @@ fn exceeds_limit(case: &Case) -> bool {
     })
 }
 
-/// Whether an approach leads to full contact, for which the mean displacement is zero.
+/// Whether a scene with two periods has an approach that would lead to full contact. The mean displacement is then zero, so that the approach cannot
+/// exceed the mean distance.
 fn is_in_full_contact(case: &Case) -> bool {
     let Load::Approach(approach) = case.load else { return false };
     let finite = || case.h.iter().filter(|h| h.is_finite());

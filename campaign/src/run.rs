@@ -1,4 +1,4 @@
-//! A case from its seed to its verdict.
+//! Runs the case of a seed, and all checks of it.
 
 use std::panic::{catch_unwind, AssertUnwindSafe};
 
@@ -10,34 +10,35 @@ use crate::{accuracy, batch, call, friction, measured, relaxing, rules, sequence
 /// The result of one case.
 pub struct Run {
     pub case: Case,
+    /// The statuses of the calls of the case.
     pub statuses: Vec<i32>,
-    /// The further calls of the case, and their statuses.
+    /// The kind of the further calls with friction or viscoelastic bodies, if the seed has some, and their statuses.
     pub beside: Option<(String, Vec<i32>)>,
     pub verdict: Verdict,
-    /// Products of AUTO without a guess, for a case without limits: those of all grids, in products on the finest.
+    /// The work units of AUTO, if the call has no guess, no fixed area, 1000 cycles and is not cancelled.
     pub products: Option<f64>,
-    /// The processor's seconds.
+    /// The processor time in seconds.
     pub seconds: f64,
 }
 
-/// The prefix of failures in the further calls.
+/// The prefix of the details of failures in further calls.
 pub const BESIDE: &str = "beside: ";
-/// AUTO with more products than this is counted, also if it ends OK.
+/// A call of AUTO with more products than this counts as an excuse, although it is OK.
 const MANY_PRODUCTS: f64 = 200.0;
 
-/// A case that takes more seconds of the processor hangs. (The largest cases take some seconds.)
+/// A case with a longer processor time, in seconds, counts as hanging. The largest cases take some seconds.
 const TOO_LONG: f64 = 60.0;
 
-/// The processor's seconds of this process, whatever the load of the machine.
+/// The processor time of this process, in seconds.
 fn seconds() -> f64 {
-    // SAFETY: a struct of two integers.
+    // SAFETY: zero is a valid value of a struct of two integers.
     let mut time: libc::timespec = unsafe { std::mem::zeroed() };
-    // SAFETY: room for the time.
+    // SAFETY: the call writes one struct, to `time`.
     unsafe { libc::clock_gettime(libc::CLOCK_PROCESS_CPUTIME_ID, &mut time) };
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Runs the case of a seed: one in 25 has a scene like those of measured surfaces.
+/// Runs the case of a seed. One case in 25 has a surface like measured ones.
 pub fn ordinary(seed: u64) -> Run {
     if Random::new(seed ^ 0x0b12_76ed).chance(0.04) {
         return measured(seed);
@@ -45,16 +46,17 @@ pub fn ordinary(seed: u64) -> Run {
     run(Case::new(seed))
 }
 
-/// Runs the case of a seed with a scene like those of measured surfaces.
+/// Runs the case of a seed with a surface like measured ones.
 pub fn measured(seed: u64) -> Run {
     run(measured::case(seed))
 }
 
+/// Runs a case. A panic and a long processor time are failures.
 fn run(case: Case) -> Run {
     let began = seconds();
     let mut run =
         Run { case, statuses: Vec::new(), beside: None, verdict: Verdict::default(), products: None, seconds: 0.0 };
-    if let Err(panic) = catch_unwind(AssertUnwindSafe(|| ask(&mut run))) {
+    if let Err(panic) = catch_unwind(AssertUnwindSafe(|| make_calls(&mut run))) {
         let details = panic.downcast_ref::<String>().cloned().unwrap_or_default();
         run.verdict.fail("no panic", details);
     }
@@ -65,7 +67,8 @@ fn run(case: Case) -> Run {
     run
 }
 
-fn ask(run: &mut Run) {
+/// Makes the calls of a case.
+fn make_calls(run: &mut Run) {
     if run.case.through_handle {
         let found = sequence::run(&run.case);
         run.statuses = found.statuses;
@@ -76,7 +79,7 @@ fn ask(run: &mut Run) {
     beside(run);
 }
 
-/// Makes one call, and repeats it.
+/// Makes one call without a handle and checks the result. Most calls are repeated, and must have the same bits.
 fn single(run: &mut Run) {
     let case = &run.case;
     let found = call::solve(case);
@@ -89,17 +92,17 @@ fn single(run: &mut Run) {
             run.verdict.excuse("AUTO took more than 200 products");
         }
     }
-    // Large cases are repeated now and then.
+    // One large case in four is repeated.
     if case.grid.len() < 5000 || case.seed % 4 == 0 {
         let same = call::solve(case).bits() == found.bits();
         run.verdict.unless(same, "the same call twice has the same bits", String::new);
     }
 }
 
-/// Makes the further calls of some seeds.
+/// Makes further calls, for some seeds: other functions of the library, or scenes with friction or viscoelastic bodies.
 fn beside(run: &mut Run) {
     let case = &run.case;
-    // A separate sequence, so that the random numbers of the case do not change.
+    // A separate sequence of random numbers, so that the case stays the same.
     let random = &mut Random::new(case.seed ^ 0x00be_51de);
     let verdict = match random.uniform() {
         u if u < 0.04 => stress::check(random),

@@ -1,4 +1,4 @@
-//! The scales of the numbers of a scene, and a limit of the pressures by them.
+//! The scales of a scene's distances and pressures, and random pressure limits relative to these scales.
 
 use crate::effects::{Effects, Values};
 use crate::grid::{Grid, Load};
@@ -7,24 +7,28 @@ use crate::random::Random;
 
 /// The scales of a scene's distances and pressures.
 pub struct Scales {
+    /// The smallest undeformed distance.
     pub lowest: f64,
-    /// The difference of the highest and the lowest point, or a length for a flat surface.
+    /// The difference between the largest and the smallest undeformed distance. For a flat surface: 1e-3 of the grid's size.
     pub depth: f64,
+    /// A pressure whose displacements are of the order of `depth`.
     pub pressure: f64,
 }
 
 impl Scales {
+    /// The scales of a surface on bodies with the compliance `c = 1/(pi E*)`.
     pub fn of(h: &[f64], effects: &Effects, grid: &Grid, c: f64) -> Scales {
         let finite = || h.iter().copied().filter(|h| h.is_finite());
         let (lowest, highest) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-        let own = Operator::new(grid, c, effects).diagonal();
+        let self_influence = Operator::new(grid, c, effects).diagonal();
         let size = (grid.mx as f64 * grid.dx).max(grid.my as f64 * grid.dy);
         let depth = if highest > lowest { highest - lowest } else { 1e-3 * size };
-        Scales { lowest, depth, pressure: depth / (own * (grid.len() as f64).sqrt()) }
+        Scales { lowest, depth, pressure: depth / (self_influence * (grid.len() as f64).sqrt()) }
     }
 }
 
-/// A limit. With a force the limit is such that the force is a part of the greatest one, mostly nearly all of it.
+/// A random pressure limit: one for all elements, or one for each. If a force is prescribed, the limit is chosen so that the force is 5 % to 110 % of
+/// the largest force that the limit allows.
 pub fn limit(random: &mut Random, scales: &Scales, load: Load, h: &[f64], grid: &Grid) -> Values {
     let shape: Vec<f64> = match random.chance(0.5) {
         true => vec![1.0; grid.len()],

@@ -1,4 +1,4 @@
-//! A handle through a sequence of calls: other surfaces and loads, refusals, cancellations, effects of other values.
+//! Checks a handle in a random sequence of calls: with other surfaces and loads, with effects of other values, and with calls that must be refused.
 
 use contact_normal::ffi::*;
 
@@ -10,20 +10,22 @@ use crate::random::Random;
 use crate::rules::{check, reason};
 use crate::verdict::Verdict;
 
-/// The verdict, and the statuses of the calls.
+/// The result of a sequence: the statuses of its calls, and the verdict.
 pub struct Found {
     pub statuses: Vec<i32>,
     pub verdict: Verdict,
 }
 
-/// The result that the handle may hold.
+/// The pressures that the handle may hold.
 #[derive(Default)]
 struct Held {
+    /// Those of the last call with a status >= 0.
     last: Option<Vec<f64>>,
+    /// Those of the last call with status OK.
     last_solved: Option<Vec<f64>>,
 }
 
-/// Runs the sequence of a case.
+/// Makes the calls of a case, which is the first of the sequence.
 pub fn run(case: &Case) -> Found {
     let mut random = Random::new(case.seed ^ 0x5eed);
     let mut found = Found { statuses: Vec::new(), verdict: Verdict::default() };
@@ -53,6 +55,7 @@ pub fn run(case: &Case) -> Found {
     found
 }
 
+/// Stores the status and the pressures of a call.
 fn remember(outputs: &Outputs, held: &mut Held, found: &mut Found) {
     found.statuses.push(outputs.status);
     if outputs.status >= 0 {
@@ -63,7 +66,7 @@ fn remember(outputs: &Outputs, held: &mut Held, found: &mut Found) {
     }
 }
 
-/// A call that is certified; a call without a guess has the bits of one without a handle.
+/// Solves a case and checks the result. If the solve does not start from the last result, it must have the bits of a call without a handle.
 fn solve(case: &Case, previous: bool, what: &str, handle: &mut Handle, held: &mut Held, found: &mut Found) {
     let outputs = handle.solve(case, previous);
     remember(&outputs, held, found);
@@ -77,7 +80,7 @@ fn solve(case: &Case, previous: bool, what: &str, handle: &mut Handle, held: &mu
     }
 }
 
-/// A call that must be refused.
+/// Makes a call that must be refused.
 fn spoil(case: &Case, random: &mut Random, handle: &mut Handle, found: &mut Found) {
     let mut spoiled = case.clone();
     let kind = random.integer(0, 3);
@@ -96,13 +99,13 @@ fn spoil(case: &Case, random: &mut Random, handle: &mut Handle, found: &mut Foun
     }
 }
 
-/// The same effects with other values must be used, or refused by name, and never ignored.
+/// Solves a case whose effects have other values. The handle must use these values, or refuse the call with a message; it must not ignore them.
 fn change_effects(case: &Case, random: &mut Random, handle: &mut Handle, held: &mut Held, found: &mut Found) {
     let mut changed = case.clone();
-    let own = case.operator().diagonal();
+    let self_influence = case.operator().diagonal();
     let effects = &mut changed.effects;
     if effects.layer.is_some() {
-        effects.layer = Some(effects::layer(random, &case.grid, own));
+        effects.layer = Some(effects::layer(random, &case.grid, self_influence));
     } else if effects.patches.is_some() {
         effects.patches = Some(effects::patches(random, &case.grid));
     } else if let Some(table) = effects.influence.as_mut().or(effects.row_tables.as_mut()) {
@@ -124,7 +127,7 @@ fn change_effects(case: &Case, random: &mut Random, handle: &mut Handle, held: &
     }
 }
 
-/// Checks that the handle holds the last complete result, or says that it has none.
+/// Checks that the handle holds the last complete result, or reports that it has none.
 fn holds(handle: &Handle, held: &Held, n: usize, found: &mut Found) {
     let Some(p) = handle.pressures(n) else { return };
     let same = |of: &Option<Vec<f64>>| {

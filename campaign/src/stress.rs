@@ -1,14 +1,14 @@
-//! Stresses below the surface: those that the library returns against direct sums of point forces.
+//! Stresses below the surface: compares those of the library with direct sums of point forces.
 //!
-//! A force `(fx, fy, fz)` on the surface of a half-space, fz into it, makes at `r = (x, y, z)` the stresses of Boussinesq and Cerruti
-//! (Johnson, Contact Mechanics, eq. 3.19 and appendix; Love, section 166), with `R = |r|`, `h = 1 - 2 nu`, and e.g.
+//! A force `(fx, fy, fz)` on the surface of a half-space, with fz directed into the body, causes the stresses of Boussinesq and Cerruti at `r = (x,
+//! y, z)` (Johnson, Contact Mechanics, eq. 3.19 and appendix; Love, section 166). With `R = |r|` one of them is
 //!
 //! ```text
 //! szz = -3 z^2 (fx x + fy y + fz z)/(2 pi R^5)
 //! ```
 //!
-//! The load of an element is a sum of such forces at Gauss points, with more points on near elements. With patches the loads count by the factor
-//! of their patch; with two periods the stresses are sums over waves (`stress_waves`).
+//! The load of an element is replaced by such forces at Gauss points, with more points on near elements. With patches the loads are multiplied by the
+//! factor between their patch and that of the element above the point. With two periods the stresses are sums over waves (`stress_waves`).
 
 use std::f64::consts::PI;
 use std::ptr::null;
@@ -24,9 +24,10 @@ use crate::random::Random;
 use crate::stress_waves::Waves;
 use crate::verdict::Verdict;
 
+/// The stresses xx, yy, zz, xy, xz, yz.
 type Tensor = [f64; 6];
 
-/// Stresses by a force along z.
+/// The stresses at a point by a unit force along z in the origin.
 fn boussinesq(nu: f64, [x, y, z]: [f64; 3]) -> Tensor {
     let r = (x * x + y * y + z * z).sqrt();
     let (h, r3, s) = (1.0 - 2.0 * nu, r.powi(3), r + z);
@@ -38,7 +39,7 @@ fn boussinesq(nu: f64, [x, y, z]: [f64; 3]) -> Tensor {
     [xx, yy, shear * z, xy, shear * x, shear * y].map(|value| value / (2.0 * PI))
 }
 
-/// Stresses by a force along x.
+/// The stresses at a point by a unit force along x in the origin.
 fn cerruti(nu: f64, [x, y, z]: [f64; 3]) -> Tensor {
     let r = (x * x + y * y + z * z).sqrt();
     let (h, r2, s) = (1.0 - 2.0 * nu, r * r, r + z);
@@ -52,30 +53,34 @@ fn cerruti(nu: f64, [x, y, z]: [f64; 3]) -> Tensor {
     [xx, yy, by * z, xy, by * x, by * y].map(|value| value / (2.0 * PI))
 }
 
-/// Stresses by a force along y.
+/// The stresses at a point by a unit force along y in the origin.
 fn cerruti_y(nu: f64, [x, y, z]: [f64; 3]) -> Tensor {
     let [xx, yy, zz, xy, xz, yz] = cerruti(nu, [y, x, z]);
     [yy, xx, zz, xy, yz, xz]
 }
 
-/// Gauss points along an element, from its centre, and their weights. The element is divided into parts of at most half of its distance.
-fn places(rule: &[(f64, f64)], d: f64, distance: f64) -> Vec<(f64, f64)> {
+/// Gauss points along a side d of an element, relative to its centre, and their weights. The side is divided into parts of at most half of the
+/// distance.
+fn gauss_points(rule: &[(f64, f64)], d: f64, distance: f64) -> Vec<(f64, f64)> {
     let parts = (2.0 * d / distance).ceil().max(1.0);
     let part = |k: usize| rule.iter().map(move |(x, w)| ((k as f64 + x) * d / parts - 0.5 * d, w * d / parts));
     (0..parts as usize).flat_map(part).collect()
 }
 
-/// Loads on a grid, and a body.
+/// A body, and the loads on its surface.
 struct Loaded {
     grid: Grid,
     nu: f64,
+    /// p, qx and qy of the elements. None: there are none.
     loads: [Option<Vec<f64>>; 3],
     effects: Effects,
+    /// The waves of the loads, if there are two periods.
     waves: Option<Waves>,
 }
 
 impl Loaded {
-    /// The stresses at a point, x and y from the outer corner of element (0, 0), which lies below this element.
+    /// The stresses at a point, by the campaign. x and y are measured from the outer corner of element (0, 0). `below` is the element above the
+    /// point, if there is one.
     fn at(&self, point: [f64; 3], below: Option<usize>) -> Tensor {
         let Grid { mx, dx, dy, .. } = self.grid;
         if let Some(waves) = &self.waves {
@@ -95,11 +100,11 @@ impl Loaded {
             }
             let centre = [((j % mx) as f64 + 0.5) * dx, ((j / mx) as f64 + 0.5) * dy];
             let [x, y, z] = [point[0] - centre[0], point[1] - centre[1], point[2]];
-            // From the nearest place of the element.
-            let beside = |x: f64, d: f64| f64::max(x.abs() - 0.5 * d, 0.0);
-            let distance = beside(x, dx).hypot(beside(y, dy)).hypot(z);
+            // The distance from the nearest point of the element.
+            let beyond_edge = |x: f64, d: f64| f64::max(x.abs() - 0.5 * d, 0.0);
+            let distance = beyond_edge(x, dx).hypot(beyond_edge(y, dy)).hypot(z);
             let rule = if distance > 10.0 * dx.max(dy) { &far } else { &near };
-            let (in_x, in_y) = (places(rule, dx, distance), places(rule, dy, distance));
+            let (in_x, in_y) = (gauss_points(rule, dx, distance), gauss_points(rule, dy, distance));
             for (px, wx) in &in_x {
                 for (py, wy) in &in_y {
                     for (load, kernel) in loads.into_iter().zip(kernels).filter(|(load, _)| *load != 0.0) {
@@ -112,7 +117,8 @@ impl Loaded {
         sum
     }
 
-    /// The stresses of the library at depths below all elements, `[component][depth][element]`, and at points.
+    /// The stresses of the library: at depths below all elements, `[component][depth][element]`, and at points. If the library refuses the call,
+    /// returns its status. With two periods it may refuse stresses at points alone.
     fn library(&self, depths: &[f64], points: &[[f64; 3]]) -> Result<(Vec<Vec<f64>>, Vec<Tensor>), i32> {
         let structs = effect_structs(&self.effects);
         let mut scene = initialised(contact_normal_scene_init);
@@ -144,7 +150,7 @@ impl Loaded {
     }
 }
 
-/// Random loads on a grid: plain, on patches, or with two periods.
+/// Random loads on a grid: without effects, on patches, or with two periods. Also returns the largest absolute value of loads.
 fn random_loads(random: &mut Random) -> (Loaded, f64) {
     let unit = random.decades(1e-3, 1e3);
     let kind = random.uniform();
@@ -157,12 +163,12 @@ fn random_loads(random: &mut Random) -> (Loaded, f64) {
         dy: unit * if random.chance(0.5) { 1.0 } else { random.decades(0.125, 8.0) },
     };
     let size = random.decades(1e-6, 1e6);
-    let mut load = |chance: f64| {
+    let mut maybe_load = |chance: f64| {
         let values =
             (0..grid.len()).map(|_| size * random.between(-1.0, 1.0) * f64::from(random.chance(0.7))).collect();
         random.chance(chance).then_some(values)
     };
-    let mut loads = [load(0.8), load(0.5), load(0.5)];
+    let mut loads = [maybe_load(0.8), maybe_load(0.5), maybe_load(0.5)];
     if loads.iter().all(Option::is_none) {
         loads[0] = Some(vec![size; grid.len()]);
     }
@@ -171,23 +177,24 @@ fn random_loads(random: &mut Random) -> (Loaded, f64) {
         patches: has_patches.then(|| effects::patches(random, &grid)),
         ..Effects::default()
     };
-    let of = |element: usize| loads.each_ref().map(|load| load.as_ref().map_or(0.0, |load| load[element]));
-    let waves = two_periods.then(|| Waves::new(grid, of));
+    let of_element = |element: usize| loads.each_ref().map(|load| load.as_ref().map_or(0.0, |load| load[element]));
+    let waves = two_periods.then(|| Waves::new(grid, of_element));
     let nu = random.between(0.0, 0.5);
     (Loaded { grid, nu, loads, effects, waves }, size)
 }
 
-/// The stresses by random loads at two depths: below some elements, and at other points.
+/// Checks the stresses by random loads at two depths, below two elements and at two other points.
 pub fn check(random: &mut Random) -> Verdict {
     let (loaded, size) = random_loads(random);
     let (grid, longer) = (loaded.grid, loaded.grid.dx.max(loaded.grid.dy));
     let depths = [longer * random.decades(0.2, 3.0), longer * random.decades(1.0, 100.0)];
     let elements: Vec<usize> = (0..2).map(|_| random.integer(0, grid.len() - 1)).collect();
-    // With patches, a point needs an element above it.
-    let beyond = if loaded.effects.patches.is_some() { 0.0 } else { 1.0 };
-    let beside = |random: &mut Random, m: usize, d: f64| random.between(-beyond, m as f64 + beyond) * d;
-    let points: Vec<[f64; 3]> =
-        (0..2).map(|k| [beside(random, grid.mx, grid.dx), beside(random, grid.my, grid.dy), depths[k % 2]]).collect();
+    // Points may be up to one element outside the grid. With patches, a point needs an element above it.
+    let margin = if loaded.effects.patches.is_some() { 0.0 } else { 1.0 };
+    let coordinate = |random: &mut Random, m: usize, d: f64| random.between(-margin, m as f64 + margin) * d;
+    let points: Vec<[f64; 3]> = (0..2)
+        .map(|k| [coordinate(random, grid.mx, grid.dx), coordinate(random, grid.my, grid.dy), depths[k % 2]])
+        .collect();
     let (on_grid, at_points) = match loaded.library(&depths, &points) {
         Ok(found) => found,
         Err(status) => return Verdict::failed("stresses are refused without a reason", format!("{status}")),
@@ -199,8 +206,8 @@ pub fn check(random: &mut Random) -> Verdict {
     let mut compare = |found: Tensor, place: [f64; 3], below: Option<usize>| {
         let exact = loaded.at(place, below);
         for (c, (found, exact)) in found.into_iter().zip(exact).enumerate() {
-            // Loads are at most `size`. The relative error of eight points on parts of half the distance is `(4 + sqrt 17)^-16 = 3e-15`, that of
-            // four points at a distance of ten elements `(1/40)^8`, times the growth of differences of 1/R^3.
+            // Loads are at most `size`. The relative error of eight Gauss points on parts of half the distance is `(4 + sqrt 17)^-16 = 3e-15`. That
+            // of four points at a distance of ten elements is `(1/40)^8`. Both grow by the derivatives of 1/R that stresses have.
             let is_near = (found - exact).abs() <= 1e-9 * size;
             verdict.unless(is_near, "stresses are those of the loads", || {
                 let effects = loaded.effects.name();
@@ -226,7 +233,8 @@ pub fn check(random: &mut Random) -> Verdict {
 mod tests {
     use super::*;
 
-    /// On the axis of a square and below a corner: Love (1929), Johnson (3.26) for szz; and equilibrium of each kernel by differences.
+    /// Checks the equilibrium of the stresses of each force by differences, and szz below the centre of a square with a uniform pressure by its
+    /// closed form (Love 1929).
     #[test]
     fn kernels_are_in_equilibrium_and_have_the_closed_form() {
         for kernel in [boussinesq, cerruti, cerruti_y] {

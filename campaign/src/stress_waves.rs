@@ -1,14 +1,15 @@
-//! Stresses below periodic loads that are constant on elements: sums over waves.
+//! Stresses below periodic loads that are constant on elements, as sums over waves.
 //!
-//! A wave `e^(i k.x)` of the loads on a half-space makes these stresses, with `n` along k, `t` across it and `d = e^(-k z)`:
+//! A wave `e^(i k.x)` of the loads on a half-space causes these stresses, with `n` along k, `t` across k, and `d = e^(-k z)`:
 //!
 //! ```text
-//! of p          nn: -(1 - k z) d     tt: -2 nu d       zz: -(1 + k z) d     nz: i k z d
-//! of q along n  nn: i (2 - k z) d    tt: 2 i nu d      zz: i k z d          nz: -(1 - k z) d
-//! of q along t  nt: i d              tz: -d
+//! by p            nn: -(1 - k z) d     tt: -2 nu d       zz: -(1 + k z) d     nz: i k z d
+//! by q along n    nn: i (2 - k z) d    tt: 2 i nu d      zz: i k z d          nz: -(1 - k z) d
+//! by q along t    nt: i d              tz: -d
 //! ```
 //!
-//! by Airy's function `(A + B z) e^(-k z)`. The mean of p makes `xx = yy = -nu/(1 - nu) p`, `zz = -p`; that of q `xz = -qx`, `yz = -qy`.
+//! They follow from Airy's function `(A + B z) e^(-k z)`. The mean of p causes `xx = yy = -nu/(1 - nu) p` and `zz = -p`; the mean of q causes `xz =
+//! -qx` and `yz = -qy`.
 
 use std::f64::consts::PI;
 
@@ -24,17 +25,19 @@ fn scaled(a: Complex, by: f64) -> Complex {
     [a[0] * by, a[1] * by]
 }
 
-/// The amplitudes of p, qx and qy of the waves `(i, j)` of a grid, row by row. All aliases of a wave have its amplitude.
+/// The waves of periodic loads.
 pub struct Waves {
     grid: Grid,
+    /// The amplitudes of p, qx and qy of the waves `(i, j)` of the grid, row by row. Waves with i + mx, i + 2 mx, ... (aliases) have the same
+    /// amplitude.
     amplitudes: Vec<[Complex; 3]>,
 }
 
-/// Waves fade as `e^(-k z)`: those with k z above this are left out.
+/// Waves decay with the depth as `e^(-k z)`. Waves with k z above this number are left out.
 const NEGLIGIBLE: f64 = 36.0;
 
 impl Waves {
-    /// `loads(element)`: p, qx, qy.
+    /// The waves of loads; `loads(element)` returns p, qx and qy.
     pub fn new(grid: Grid, loads: impl Fn(usize) -> [f64; 3]) -> Waves {
         let Grid { mx, my, .. } = grid;
         let amplitude = |wave: usize| {
@@ -51,7 +54,7 @@ impl Waves {
         Waves { grid, amplitudes: (0..mx * my).map(amplitude).collect() }
     }
 
-    /// xx, yy, zz, xy, xz, yz at a point, x and y from the outer corner of element (0, 0).
+    /// The stresses xx, yy, zz, xy, xz, yz at a point. x and y are measured from the outer corner of element (0, 0).
     pub fn at(&self, nu: f64, [x, y, z]: [f64; 3]) -> [f64; 6] {
         let Grid { mx, my, dx, dy } = self.grid;
         let reach = |d: f64| (NEGLIGIBLE * d / (2.0 * PI * z)).ceil() as i64 + 1;
@@ -66,7 +69,7 @@ impl Waves {
                     if kx.hypot(ky) * z > NEGLIGIBLE {
                         continue;
                     }
-                    // From the middle of element (0, 0).
+                    // Phases are relative to the middle of element (0, 0).
                     let (sine, cosine) = (kx * (x - 0.5 * dx) + ky * (y - 0.5 * dy)).sin_cos();
                     let mean = sinc(0.5 * kx * dx) * sinc(0.5 * ky * dy);
                     let loads = self.amplitudes[wave].map(|load| times(scaled(load, mean), [cosine, sine]));
@@ -89,7 +92,7 @@ fn of_wave(nu: f64, [kx, ky]: [f64; 2], z: f64, [p, qx, qy]: [Complex; 3]) -> [f
     let (c, s, kz, d) = (kx / k, ky / k, k * z, (-k * z).exp());
     let across = |x: Complex, y: Complex, c: f64, s: f64| [c * x[0] + s * y[0], c * x[1] + s * y[1]];
     let (along, cross) = (across(qx, qy, c, s), across(qx, qy, -s, c));
-    // The real part of p, and that of i q.
+    // The real parts of `v d` and of `i v d`.
     let (re, im) = (|v: Complex| v[0] * d, |v: Complex| -v[1] * d);
     let nn = -(1.0 - kz) * re(p) + (2.0 - kz) * im(along);
     let tt = -2.0 * nu * re(p) + 2.0 * nu * im(along);
@@ -106,7 +109,7 @@ fn of_wave(nu: f64, [kx, ky]: [f64; 2], z: f64, [p, qx, qy]: [Complex; 3]) -> [f
 mod tests {
     use super::*;
 
-    /// One wave at an angle: equilibrium by differences, and the loads at the surface.
+    /// Checks one wave at an angle: the equilibrium of its stresses by differences, and the loads at the surface.
     #[test]
     fn a_wave_is_in_equilibrium_and_meets_its_loads() {
         let (k, loads) = ([0.7, -0.4], [1.0, 0.6, -0.3]);

@@ -1,20 +1,20 @@
-//! Undeformed distances of many kinds.
+//! Random undeformed distances of many kinds.
 
 use std::f64::consts::PI;
 
 use crate::grid::Grid;
 use crate::random::Random;
 
-/// The centres of the elements: offsets from the middle of the grid, over its half width.
+/// The centres of the elements, relative to the middle of the grid, in units of the grid's half width in each direction.
 fn centres(mx: usize, my: usize) -> impl Iterator<Item = (f64, f64)> {
     let along = |i: usize, m: usize| (2 * i + 1) as f64 / m as f64 - 1.0;
     (0..mx * my).map(move |i| (along(i % mx, mx), along(i / mx, my)))
 }
 
-/// A name and h, of order 1.
+/// A random surface: its name, and undeformed distances of order 1.
 pub fn any(random: &mut Random, grid: &Grid) -> (String, Vec<f64>) {
     let Grid { mx, my, .. } = *grid;
-    // On fine grids mostly noise, whose peaks coarser grids do not resolve.
+    // On fine grids mostly noise: coarser grids do not resolve its peaks.
     let kind = if mx * my > 3000 && random.chance(0.5) { 3 } else { random.integer(0, 8) };
     let (name, mut h) = match kind {
         0 | 1 => ("paraboloid", paraboloid(random, mx, my)),
@@ -61,7 +61,7 @@ fn rough_ball(random: &mut Random, mx: usize, my: usize) -> Vec<f64> {
     centres(mx, my).map(|(x, y)| x * x + y * y + roughness * random.uniform()).collect()
 }
 
-/// Elements without a surface: scattered, a border, or all but one.
+/// Excludes elements (h infinite): scattered ones, the border, or all but one.
 fn make_holes(random: &mut Random, mx: usize, my: usize, h: &mut [f64]) {
     let (kind, part, only) = (random.integer(0, 3), random.between(0.05, 0.9), random.integer(0, mx * my - 1));
     for (i, h) in h.iter_mut().enumerate() {

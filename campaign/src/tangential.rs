@@ -1,5 +1,5 @@
-//! Displacements by tractions and by pressures, for like and unlike bodies, by the campaign's own coefficients (`tangential_coefficients`). Tractions
-//! have displacements `-(Axz qx + Ayz qy)` along the normal.
+//! Tangential displacements by tractions and by pressures, for like and unlike bodies, with the coefficients of the campaign
+//! (`tangential_coefficients`). Between unlike bodies tractions also cause normal displacements, `-(Axz qx + Ayz qy)`.
 
 use std::cell::{Cell, OnceCell};
 use std::f64::consts::PI;
@@ -12,28 +12,31 @@ use crate::tangential_coating::{Coat, ACCURACY};
 pub use crate::tangential_coefficients::Vector;
 use crate::tangential_coefficients::{Compliance, Entry};
 
-/// Products with more terms use the transform.
+/// Products with more terms than this use the transform.
 const LONG: usize = 300_000;
 
-/// Coefficients between the elements of a grid and places with an offset from them.
+/// The coefficients between loads on the elements of a grid and displacements at places that are shifted by a vector from the elements.
 pub struct Operator {
     grid: Grid,
-    /// The coefficients of offsets `-(m - 1)..m`.
+    /// The coefficients at offsets `-(m - 1)..m` in each direction, row by row.
     pub table: Vec<Entry>,
-    /// Factors of the rows of loads and displacements, for tables per loaded row.
+    /// For row tables: the factors of the rows, which multiply loads and displacements.
     rows: Option<Vec<f64>>,
+    /// Whether the bodies are unlike.
     couples: bool,
-    /// The possible round-off of a displacement by loads whose absolute values add up to 1, and by loads whose 2-norm is 1.
+    /// The possible round-off of a displacement: by loads whose absolute values add up to 1, and by loads whose 2-norm is 1.
     rounding: [f64; 2],
+    /// The transforms of xx, yy, xy, xz and yz, which the first long product makes.
     transforms: OnceCell<[Convolution; 5]>,
 }
 
 impl Operator {
+    /// The coefficients of a place, for displacements that are shifted by `by`.
     pub fn new(place: &Place, by: Vector) -> Operator {
         let Grid { mx, my, dx, dy } = place.grid;
         let coating = place.effects.coating.as_ref();
         let Compliance { shear, poisson, unlike } = place.materials();
-        let (element, own) = (place.element(), place.own.as_ref().map(|own| &own.kind));
+        let (element, kind) = (place.element(), place.traction_tables.as_ref().map(|tables| &tables.kind));
         let mut largest: f64 = 0.0;
         let coat = coating.map(|coating| Coat::new(coating, &place.grid, by));
         let mut entry = |kx: i64, ky: i64| {
@@ -46,10 +49,10 @@ impl Operator {
             entry
         };
         let reach = |m: usize| 1 - m as i64..m as i64;
-        let table: Vec<Entry> = match own {
+        let table: Vec<Entry> = match kind {
             None => reach(my).flat_map(|ky| reach(mx).map(move |kx| (kx, ky))).map(|(kx, ky)| entry(kx, ky)).collect(),
             Some(kind) => {
-                // Steps are whole elements along x.
+                // With the caller's tables, steps of rolling are whole elements along x.
                 let step = (by[0] / dx).round() as i64;
                 let largest = &Cell::new(largest);
                 let at = |kx: i64, ky: i64| {
@@ -63,19 +66,20 @@ impl Operator {
         };
         let greatest = table.iter().flatten().fold(0.0, |greatest: f64, value| greatest.max(value.abs()));
         let norm = table.iter().flatten().map(|value| value * value).sum::<f64>().sqrt();
-        // Eight terms, each with some units of round-off of the largest; and both transforms.
+        // A coefficient has up to eight terms, each with a round-off of some units relative to the largest. Both transforms, here and in the library,
+        // have errors as well.
         let terms = (shear + poisson.abs() + unlike.abs()) * largest / PI + greatest;
         let steps = 4.0 + (16.0 * table.len() as f64).log2();
         let quadrature = if coat.is_some() { ACCURACY * greatest } else { 0.0 };
         let rounding = [64.0 * f64::EPSILON * terms + quadrature, 8.0 * steps * f64::EPSILON * norm];
-        let rows = match own {
+        let rows = match kind {
             Some(Kind::Rows { d }) => Some(d.clone()),
             _ => None,
         };
         Operator { grid: place.grid, table, rows, couples: unlike != 0.0, rounding, transforms: OnceCell::new() }
     }
 
-    /// Whether pressures have tangential displacements, and tractions displacements along the normal.
+    /// Whether pressures cause tangential displacements, and tractions normal ones: the bodies are unlike.
     pub fn couples(&self) -> bool {
         self.couples
     }
@@ -87,18 +91,20 @@ impl Operator {
         self.rounding[0] * sum + self.rounding[1] * squares.sqrt()
     }
 
-    /// The coefficients of element i by a load of 1 on element j.
+    /// The coefficients for the displacement of element i by loads on element j.
     pub fn between(&self, i: usize, j: usize) -> Entry {
         let (mx, my) = (self.grid.mx, self.grid.my);
         let (kx, ky) = (i % mx + mx - 1 - j % mx, i / mx + my - 1 - j / mx);
         let entry = self.table[ky * (2 * mx - 1) + kx];
-        entry.map(|value| self.of_row(i) * self.of_row(j) * value)
+        entry.map(|value| self.row_factor(i) * self.row_factor(j) * value)
     }
 
-    fn of_row(&self, i: usize) -> f64 {
+    /// The factor of the row of element i.
+    fn row_factor(&self, i: usize) -> f64 {
         self.rows.as_ref().map_or(1.0, |d| d[i / self.grid.mx])
     }
 
+    /// The transforms of the table.
     fn transforms(&self) -> &[Convolution; 5] {
         let (mx, my) = (self.grid.mx as i64, self.grid.my as i64);
         let at = |kx: i64, ky: i64| ((ky + my - 1) * (2 * mx - 1) + kx + mx - 1) as usize;
@@ -108,7 +114,7 @@ impl Operator {
         })
     }
 
-    /// Displacements x, y and along the normal by tractions.
+    /// The displacements in x, in y and along the normal by tractions.
     pub fn by_tractions(&self, q: &[Vector]) -> Vec<[f64; 3]> {
         let loaded: Vec<usize> = (0..q.len()).filter(|&j| q[j] != [0.0; 2]).collect();
         if loaded.len() * q.len() <= LONG {
@@ -119,23 +125,24 @@ impl Operator {
             return (0..q.len()).map(|i| loaded.iter().fold([0.0; 3], |u, &j| add(i, u, j))).collect();
         }
         let [x, y] =
-            [0, 1].map(|k: usize| q.iter().enumerate().map(|(i, q)| self.of_row(i) * q[k]).collect::<Vec<f64>>());
+            [0, 1].map(|k: usize| q.iter().enumerate().map(|(i, q)| self.row_factor(i) * q[k]).collect::<Vec<f64>>());
         let [xx, yy, xy, xz, yz] = self.transforms();
-        let [of_x, of_y] = xy.apply([&x, &y]);
-        let mut u: Vec<[f64; 3]> = (0..q.len()).map(|i| [of_y[i], of_x[i], 0.0]).collect();
-        for (k, sign, sum) in [(0, 1.0, xx.of(&x)), (1, 1.0, yy.of(&y))] {
-            u.iter_mut().zip(sum).for_each(|(u, value)| u[k] += sign * value);
+        // Tractions in x cause displacements in y by xy, and the reverse.
+        let [y_by_x, x_by_y] = xy.apply([&x, &y]);
+        let mut u: Vec<[f64; 3]> = (0..q.len()).map(|i| [x_by_y[i], y_by_x[i], 0.0]).collect();
+        for (k, sum) in [(0, xx.of(&x)), (1, yy.of(&y))] {
+            u.iter_mut().zip(sum).for_each(|(u, value)| u[k] += value);
         }
         if self.couples {
             for sum in [xz.of(&x), yz.of(&y)] {
                 u.iter_mut().zip(sum).for_each(|(u, value)| u[2] -= value);
             }
         }
-        u.iter_mut().enumerate().for_each(|(i, u)| *u = u.map(|value| self.of_row(i) * value));
+        u.iter_mut().enumerate().for_each(|(i, u)| *u = u.map(|value| self.row_factor(i) * value));
         u
     }
 
-    /// Displacements in x and y by pressures.
+    /// The displacements in x and y by pressures. They are 0 between like bodies.
     pub fn by_pressures(&self, p: &[f64]) -> Vec<Vector> {
         if !self.couples {
             return vec![[0.0; 2]; p.len()];
@@ -161,7 +168,7 @@ mod tests {
         Place::new(Grid { mx, my, dx: 0.7, dy: 0.4 }, [2.0, 5.0], [0.3, 0.1])
     }
 
-    /// Closed forms compared with midpoint rules of the kernels `((1 - nu)/r + nu x^2/r^3)/(2 pi G)` of both bodies, and `-K x/r^2/(pi G)`.
+    /// Compares closed forms with the midpoint rule, for the kernels `((1 - nu)/r + nu x^2/r^3)/(2 pi G)` of both bodies and `-K x/r^2/(pi G)`.
     #[test]
     fn closed_forms_are_integrals() {
         let (place, m) = (place(4, 3), 200);
@@ -189,7 +196,7 @@ mod tests {
         }
     }
 
-    /// The transform gives the direct sums, for tractions and for pressures.
+    /// Products by the transform are the direct sums, for tractions and for pressures.
     #[test]
     fn transforms_do_the_sums() {
         let operator = Operator::new(&place(40, 31), [0.2, 0.0]);

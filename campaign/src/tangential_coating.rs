@@ -1,28 +1,31 @@
-//! Displacements by tractions on surfaces with a coating, less those of half-spaces of the layer's material.
+//! The change of displacements by tractions that a coating of both bodies causes, compared with half-spaces of the layer's material.
 //!
-//! With the responses L along a wave and T across it a wave of tractions displaces by `((1 - nu1) L k k^T/k^2 + T (1 - k k^T/k^2))/(G1 k)`. In real space
-//! that is, of both bodies and in 1/(pi G1 t),
+//! With the transfer functions L along a wave and T across it (`hankel`), a wave k of tractions causes the displacements
+//! `((1 - nu1) L k k^T/k^2 + T (1 - k k^T/k^2))/(G1 k)`. In real space the changes, of both bodies and in units of 1/(pi G1 t), are
 //!
 //! ```text
 //! xx = S + D cos 2 theta,   yy = S - D cos 2 theta,   xy = D sin 2 theta
 //! S(rho) = integral over s > 0 of (T - 1 + (1 - nu1) (L - 1))/2 J0(s rho),   D(rho) = integral of (T - 1 - (1 - nu1) (L - 1))/2 J2(s rho)
 //! ```
 //!
-//! Both are tabulated along the distance, and integrated over elements by Gauss's rule, as for pressures (`coating`).
+//! S and D are tabulated along the distance, and integrated over elements by Gauss's rule, as for pressures (`coating`).
 
 use crate::coating::Coating;
 use crate::grid::Grid;
 use crate::hankel::{of_tractions, Rules, Table};
 use crate::tangential_coefficients::Vector;
 
-/// The error of a coefficient, relative to the largest, of the library and of this module: four digits cancel in L, and the tables have an error of 1e-13.
+/// The error of a coefficient, relative to the largest one, of the library and of this module together. Four digits cancel in L, and the tables have
+/// an error of 1e-13.
 pub const ACCURACY: f64 = 1e-11;
 
-/// The change by the coating of both bodies.
+/// The change of the coefficients by a coating.
 pub struct Coat {
-    /// Both radial functions; none without a coating.
+    /// S and D. None if the layer has no thickness.
     tables: Option<[Table; 2]>,
+    /// The thickness of the layer.
     t: f64,
+    /// The sides of an element.
     sides: Vector,
     rules: Rules,
 }
@@ -33,7 +36,7 @@ fn j2(x: f64) -> f64 {
 }
 
 impl Coat {
-    /// The change on a grid, for displacements at a distance from the centres.
+    /// The change on a grid. Displacements are at places that are shifted by `by` from the centres of elements.
     pub fn new(coating: &Coating, grid: &Grid, by: Vector) -> Coat {
         let (_, t, mu, nu) = coating.surface(0);
         let reach = |m: usize, d: f64, by: f64| (m as f64 + 1.0) * d + by.abs();
@@ -53,7 +56,7 @@ impl Coat {
         }
     }
 
-    /// xx, yy and xy at an offset, in 1/(pi G1).
+    /// The changes of xx, yy and xy at an offset, in units of 1/(pi G1).
     pub fn at(&self, at: Vector) -> [f64; 3] {
         let Some([s, d]) = &self.tables else { return [0.0; 3] };
         let [dx, dy] = self.sides;
@@ -70,7 +73,7 @@ impl Coat {
                 sums[2] += d * 2.0 * cosine * sine;
             }
         }
-        // A function that is odd across a line of elements is 0 on it.
+        // xy is odd in x and in y, so it is 0 on both axes.
         if at[0] == 0.0 || at[1] == 0.0 {
             sums[2] = 0.0;
         }
@@ -83,7 +86,7 @@ mod tests {
     use super::*;
     use crate::coating::Layer;
 
-    /// The coefficients of 3 x 3 elements add up to that of one element three times as long. A thin layer hardly changes those of the body.
+    /// The coefficients of 3 x 3 elements add up to that of one element with sides three times as long.
     #[test]
     fn nine_elements_are_one() {
         for (t, modulus, below, nu) in [

@@ -1,7 +1,7 @@
 //! Influence coefficients of tangential tractions on an element, and the coupling coefficients of unlike bodies.
 //!
-//! Near an element they are differences of closed forms over its corners (Kalker 1990; Johnson, Contact Mechanics, section 3.6), with
-//! `r = hypot(X, Y)`:
+//! Near an element the coefficients are differences of closed forms over its corners (Kalker 1990; Johnson, Contact Mechanics, section 3.6). Brackets
+//! stand for these differences, and `r = hypot(X, Y)`:
 //!
 //! ```text
 //! Axx = ((1 - nu) a + b)/(pi G),   Ayy = (a + (1 - nu) b)/(pi G),   Axy = nu c/(pi G)
@@ -9,32 +9,37 @@
 //! a = [X asinh(Y/|X|)],   b = [Y asinh(X/|Y|)],   c = [-r],   K/G = ((1 - 2 nu1)/G1 - (1 - 2 nu2)/G2)/4
 //! ```
 //!
-//! Beside the element they are integrals of the kernels, in closed form along one direction and by Gauss points along the other, so that those of
-//! slender elements lose no digits. Far from it they are sums over sixteen Gauss points. Tractions have displacements `-(Axz qx + Ayz qy)` along the
-//! normal.
+//! At places that are some sides away from the element, the kernels are integrated in closed form along one direction and by Gauss points along the
+//! other. So the coefficients of slender elements lose no digits by cancellation. Far from the element the coefficients are sums over sixteen Gauss
+//! points. The normal displacements by tractions are `-(Axz qx + Ayz qy)`.
 
 use std::f64::consts::PI;
 
 use crate::hankel::gauss;
 
+/// A vector in the plane of the contact.
 pub type Vector = [f64; 2];
 
-/// From this number of longer sides on Gauss points replace the element: with four per side the error is `(1/120)^8`.
+/// From this number of the longer sides on, Gauss points replace the element in both directions. With four points a side the error is `(1/120)^8`.
 const FAR: f64 = 30.0;
-/// From this number of sides on eight Gauss points replace the element along this direction: the error is `(1/16)^16`.
+/// From this number of sides in a direction on, eight Gauss points replace the element in this direction. The error is `(1/16)^16`.
 const BESIDE: f64 = 4.0;
 /// The coefficients xx, yy, xy, xz, yz.
 pub type Entry = [f64; 5];
 
-/// The compliances of the bodies: 1/G and nu/G, means of both, and their difference K/G.
+/// The compliances of both bodies.
 #[derive(Clone, Copy)]
 pub struct Compliance {
+    /// The mean of 1/G.
     pub shear: f64,
+    /// The mean of nu/G.
     pub poisson: f64,
+    /// K/G, with the difference parameter K.
     pub unlike: f64,
 }
 
-/// Differences of the closed forms over the corners, and the largest of their terms.
+/// The coefficients at an offset as differences of the closed forms over the corners. Also returns the largest absolute value of a term of these
+/// differences.
 fn near(c: Compliance, [x, y]: Vector, [dx, dy]: Vector) -> (Entry, f64) {
     let (mut sums, mut largest) = ([0.0; 5], 0.0f64);
     for (sx, sy) in [(0.5, 0.5), (-0.5, 0.5), (0.5, -0.5), (-0.5, -0.5)] {
@@ -46,9 +51,10 @@ fn near(c: Compliance, [x, y]: Vector, [dx, dy]: Vector) -> (Entry, f64) {
             along + if a == 0.0 { 0.0 } else { a * (b / a).atan() }
         };
         let parts = [term(cx, cy), term(cy, cx), -cx.hypot(cy), across(cx, cy), across(cy, cx)];
-        // A coefficient that is odd across a line of elements is 0 on it, whatever its terms.
-        let odd = [x != 0.0 && y != 0.0, x != 0.0, y != 0.0];
-        let counts = [true, true, odd[0] && c.poisson != 0.0, odd[1] && c.unlike != 0.0, odd[2] && c.unlike != 0.0];
+        // An odd coefficient is 0 on its line of symmetry, so its terms have no round-off there.
+        let nonzero = [x != 0.0 && y != 0.0, x != 0.0, y != 0.0];
+        let counts =
+            [true, true, nonzero[0] && c.poisson != 0.0, nonzero[1] && c.unlike != 0.0, nonzero[2] && c.unlike != 0.0];
         largest =
             parts.iter().zip(counts).filter(|(_, counts)| *counts).fold(largest, |l, (part, _)| l.max(part.abs()));
         (0..5).for_each(|k| sums[k] += 4.0 * sx * sy * parts[k]);
@@ -64,14 +70,14 @@ fn near(c: Compliance, [x, y]: Vector, [dx, dy]: Vector) -> (Entry, f64) {
     (entry.map(|value| value / PI), largest)
 }
 
-/// The coefficients in closed form along y, and by Gauss points along x.
+/// The coefficients at an offset, integrated in closed form along y and by Gauss points along x.
 fn beside(c: Compliance, rule: &[(f64, f64)], [x, y]: Vector, [dx, dy]: Vector) -> Entry {
     let mut sums = [0.0; 5];
     for (u, w) in rule {
         let x = x - (u - 0.5) * dx;
         let ends = [y + 0.5 * dy, y - 0.5 * dy];
         let between = |f: &dyn Fn(f64) -> f64| f(ends[0]) - f(ends[1]);
-        // The integrals of 1/r, x^2/r^3, xy/r^3, x/r^2 and y/r^2.
+        // The integrals along y of 1/r, x^2/r^3, xy/r^3, x/r^2 and y/r^2.
         let over_r = between(&|y| (y / x.abs()).asinh());
         let xx = between(&|y| y / x.hypot(y));
         let xy = between(&|y| -x / x.hypot(y));
@@ -88,7 +94,7 @@ fn beside(c: Compliance, rule: &[(f64, f64)], [x, y]: Vector, [dx, dy]: Vector) 
     sums
 }
 
-/// The coefficients by Gauss points in both directions.
+/// The coefficients at an offset by Gauss points in both directions.
 fn far(c: Compliance, rule: &[(f64, f64)], [x, y]: Vector, [dx, dy]: Vector) -> Entry {
     let mut sums = [0.0; 5];
     for (u, wu) in rule {
@@ -109,34 +115,39 @@ fn far(c: Compliance, rule: &[(f64, f64)], [x, y]: Vector, [dx, dy]: Vector) -> 
     sums
 }
 
-/// The coefficients at an offset from an element, and the largest term of those with cancellation, or 0.
+/// An element on bodies with these compliances.
 pub struct Element {
     compliance: Compliance,
+    /// The sides dx and dy.
     sides: Vector,
+    /// Gauss's rules with four and with eight points.
     coarse: Vec<(f64, f64)>,
     fine: Vec<(f64, f64)>,
 }
 
 impl Element {
+    /// An element with sides dx and dy.
     pub fn new(compliance: Compliance, sides: Vector) -> Element {
         Element { compliance, sides, coarse: gauss(4), fine: gauss(8) }
     }
 
-    pub fn at(&self, at: Vector) -> (Entry, f64) {
-        let (c, [dx, dy]) = (self.compliance, self.sides);
-        if at[0].hypot(at[1]) > FAR * dx.max(dy) {
-            return (far(c, &self.coarse, at, [dx, dy]), 0.0);
+    /// The coefficients at an offset from the element. Also returns the largest absolute value of a term that cancels, or 0 if there is no
+    /// cancellation.
+    pub fn at(&self, offset: Vector) -> (Entry, f64) {
+        let (c, [dx, dy], [x, y]) = (self.compliance, self.sides, offset);
+        if x.hypot(y) > FAR * dx.max(dy) {
+            return (far(c, &self.coarse, offset, [dx, dy]), 0.0);
         }
-        // Gauss points along the shorter side, or along the other one if that is far.
-        let are_beside = [0, 1].map(|k: usize| at[k].abs() > BESIDE * [dx, dy][k]);
-        if are_beside[0] && (dx <= dy || !are_beside[1]) {
-            return (beside(c, &self.fine, at, [dx, dy]), 0.0);
+        // Gauss points replace the shorter side if the offset along it is large, or else the other side if the offset along that one is large.
+        let (is_beside_in_x, is_beside_in_y) = (x.abs() > BESIDE * dx, y.abs() > BESIDE * dy);
+        if is_beside_in_x && (dx <= dy || !is_beside_in_y) {
+            return (beside(c, &self.fine, offset, [dx, dy]), 0.0);
         }
-        if are_beside[1] {
-            let [yy, xx, xy, yz, xz] = beside(c, &self.fine, [at[1], at[0]], [dy, dx]);
+        if is_beside_in_y {
+            let [yy, xx, xy, yz, xz] = beside(c, &self.fine, [y, x], [dy, dx]);
             return ([xx, yy, xy, xz, yz], 0.0);
         }
-        near(c, at, [dx, dy])
+        near(c, offset, [dx, dy])
     }
 }
 
@@ -144,7 +155,7 @@ impl Element {
 mod tests {
     use super::*;
 
-    /// The rules agree where both are used, to the round-off of the closed forms.
+    /// The three ways of integration agree at offsets for which all are accurate, to the round-off of the closed forms.
     #[test]
     fn far_and_near_agree() {
         let (c, rule) = (Compliance { shear: 0.5, poisson: 0.1, unlike: 0.2 }, gauss(4));

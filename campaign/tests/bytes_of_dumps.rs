@@ -1,4 +1,4 @@
-//! Dumps with changed bytes: nothing is read beyond the file, and every call returns a status. fuzz/ has the same target for cargo-fuzz.
+//! Reads dumps with changed bytes. Nothing is read beyond the file, and every call returns a status. fuzz/ has the same target for cargo-fuzz.
 
 use std::ffi::CString;
 
@@ -45,7 +45,7 @@ fn changed_bytes_of_a_dump_do_no_harm() {
     let (mut made, mut refused) = (0, 0);
     let text = file.windows(6).position(|bytes| bytes == b"\ndata ").expect("the end of the text");
     for k in 0..16000 {
-        // Half of them in the text, which is the shorter part.
+        // In half of the dumps only the text is changed, which is the shorter part.
         let end = if k % 2 == 0 { text } else { file.len() };
         let mut bytes = file.clone();
         for _ in 0..random.integer(1, 3) {
@@ -56,6 +56,6 @@ fn changed_bytes_of_a_dump_do_no_harm() {
         made += statuses.len();
         refused += statuses.iter().filter(|status| **status < 0).count();
     }
-    // Usually some 2000 and 50.
+    // Usually about 2000 calls are made, and about 50 are refused.
     assert!(made > 1000 && refused > 20, "{made} made, {refused} refused");
 }

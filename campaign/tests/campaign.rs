@@ -1,9 +1,10 @@
-//! Some cases of the campaign. `make campaign N=20000` runs more of them, `make campaign SURFACES=measured N=5000` those of measured surfaces.
+//! Runs some cases of the campaign. `make campaign N=20000` runs more of them, and `make campaign SURFACES=measured N=5000` cases with surfaces like
+//! measured ones.
 
 use campaign::account::Account;
 use campaign::run::{measured, ordinary, Run};
 
-/// Runs seeds from 0 on. At least `least` of their calls must be solved.
+/// Runs the cases of the first seeds. No promise may be broken, and at least `least` calls must be solved.
 fn clean(seeds: u64, run: fn(u64) -> Run, least: usize) {
     let mut account = Account::default();
     for seed in 0..seeds {

@@ -1,4 +1,4 @@
-//! Products of a handle with random pressures, for all effects, beside those by the campaign's own coefficients.
+//! Compares products of a handle with random pressures, for all effects, with products by the coefficients of the campaign.
 
 use campaign::call::Handle;
 use campaign::case::Case;
@@ -12,7 +12,7 @@ fn products_of_random_scenes_are_those_of_the_oracle() {
         if case.grid.len() > 1200 {
             continue;
         }
-        // A refused scene has no operator.
+        // If the library refuses the scene, there is no product.
         let Ok(mut handle) = Handle::new(&case) else { continue };
         let random = &mut Random::new(seed);
         let p: Vec<f64> = (0..case.grid.len()).map(|_| random.between(-1.0, 1.0)).collect();
@@ -22,7 +22,7 @@ fn products_of_random_scenes_are_those_of_the_oracle() {
         let largest = expected.iter().fold(0.0f64, |largest, u| largest.max(u.abs()));
         for (found, expected) in found.iter().zip(&expected) {
             let off = (found - expected).abs();
-            // Coefficients of a coating have an error of 2e-10. Products by FFT have one of some units of round-off, and so have closed forms.
+            // The coefficients of a coating have an error of 2e-10. Products by FFT and closed forms have errors of some units of round-off.
             assert!(off <= 1e-9 * largest + 100.0 * rounding, "seed {seed} {}: {found} {expected}", case.describe());
         }
         asked += 1;

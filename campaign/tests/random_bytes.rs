@@ -1,12 +1,12 @@
-//! Random bytes through the C ABI. Every call returns a known status. A refused call leaves its outputs untouched, and an OK result is certified.
-//! The bytes are the same in every run. fuzz/ has the same targets for cargo-fuzz.
+//! Makes calls of the C ABI from random bytes. Every call returns a known status. A refused call leaves its outputs untouched, and each other result
+//! is checked. The bytes are the same in every run. fuzz/ has the same targets for cargo-fuzz.
 
 use campaign::bytes;
 use campaign::random::Random;
 
 type Target = fn(&[u8]) -> Vec<i32>;
 
-/// Runs a target on this many strings of bytes. Returns the number of calls with each status from 0 on.
+/// Runs a target on this many random strings of bytes. Returns the numbers of calls with the statuses 0, 1, 2 and 3.
 fn run(runs: u64, target: Target) -> [u64; 4] {
     let mut answers = [0; 4];
     let mut random = Random::new(1);
@@ -33,7 +33,7 @@ fn tables_of_coefficients() {
 #[test]
 fn frictions() {
     let answers = run(6000, bytes::friction);
-    // Most random scenes are refused. Enough of them must be solved for the test to count.
+    // Most random scenes are refused. Enough of them must be solved, so that the test checks something.
     assert!(answers[0] >= 300, "{answers:?}");
 }
 

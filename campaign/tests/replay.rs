@@ -1,4 +1,4 @@
-//! A scene that a dump holds is judged by the oracles of the campaign.
+//! The campaign solves and checks the scene of a dump.
 
 use std::ffi::CString;
 
@@ -38,7 +38,7 @@ fn the_scene_of_a_dump_is_solved_and_judged() {
     let run = replay::run(&Dump::read(&bytes).expect("a dump that can be read")).expect("a case");
     assert_eq!(run.statuses, [status]);
     assert!(run.verdict.failures.is_empty(), "{:?}", run.verdict.failures);
-    // The solved scene is the given one.
+    // The scene that is solved is the given one.
     assert_eq!((run.case.h.len(), run.case.h[17].to_bits()), (120, h[17].to_bits()));
     assert_eq!(run.case.effects.name(), "layer + limit per element");
 }

@@ -1,4 +1,4 @@
-//! Spoiled results: the oracle finds each.
+//! Spoils results of the library in one value each. The checks of the campaign must find every spoiled result.
 
 use campaign::call::{self, Outputs};
 use campaign::case::Case;
@@ -10,10 +10,10 @@ use campaign::random::Random;
 use campaign::refused_force::exceeded;
 use campaign::rules;
 
-/// Spoils a result of a case.
+/// A function that spoils a result of a case.
 type Spoil<T, C> = fn(&mut T, &C);
 
-/// The name of a spoil, and the change.
+/// Changes of a result without friction: what is changed, and the function.
 const NORMAL: [(&str, Spoil<Outputs, Case>); 7] = [
     ("a pressure", |found, _| {
         let greatest = greatest(&found.p);
@@ -34,7 +34,7 @@ const NORMAL: [(&str, Spoil<Outputs, Case>); 7] = [
         found.p[greatest] *= -1.0;
     }),
     ("the status", |found, case| {
-        // The displacements do not change with the pressures.
+        // All values belong to each other, but the pressures are 10 % too large, so that the status OK is wrong.
         found.p.iter_mut().for_each(|p| *p *= 1.1);
         found.u = case.operator().displace(&found.p);
         let e = |i: usize| case.h[i] - found.report.normal.approach + found.u[i];
@@ -42,6 +42,7 @@ const NORMAL: [(&str, Spoil<Outputs, Case>); 7] = [
     }),
 ];
 
+/// The element with the largest pressure.
 fn greatest(p: &[f64]) -> usize {
     (0..p.len()).fold(0, |best, i| if p[i] > p[best] { i } else { best })
 }
@@ -70,7 +71,8 @@ fn spoiled_answers_without_friction_are_found() {
     assert!(spoiled >= 70, "only {spoiled}");
 }
 
-/// Spoils with friction. More than one element must be in contact, so that their coupling shows.
+/// Changes of a result with friction: what is changed, and the function. More than one element must be in contact, so that elements act on each
+/// other.
 const SLIDING: [(&str, Spoil<Found, Sliding>); 5] = [
     ("a traction", |found, case| {
         let greatest = greatest(&found.p);
@@ -97,7 +99,7 @@ fn spoiled_answers_with_friction_are_found() {
     for seed in 0..110 {
         let Some(case) = campaign::friction::draw(&mut Random::new(seed)) else { continue };
         let found = call(&case.place, &case.slide, &case.stop);
-        // With previous tractions of 1e9 times the bounds the slip is round-off.
+        // Previous tractions may be 1e9 times the bounds. Then the slip is round-off, and changes of it are not found.
         let is_usual = found.status == 0 && found.report.normal.contact_count > 3 && case.slide.previous.is_none();
         if !is_usual || !campaign::friction_rules::check(&case, &found, &case.before(&found.p)).failures.is_empty() {
             continue;
@@ -113,7 +115,7 @@ fn spoiled_answers_with_friction_are_found() {
     assert!(spoiled.iter().all(|count| *count >= 30), "{spoiled:?}");
 }
 
-/// Some creepage carries a part of mu N, so that a refusal of it would be found. No creepage carries more than the greatest force.
+/// Half of mu N is carried by some creepage, so that a wrong refusal of this force would be found. Twice mu N is carried by none.
 #[test]
 fn refused_forces_that_creepages_carry_are_found() {
     let (mut tried, mut found) = (0, 0);
@@ -126,7 +128,7 @@ fn refused_forces_that_creepages_carry_are_found() {
             continue;
         }
         let k = usize::from(case.slide.is_force(1));
-        // Spin and the other creepage would change the direction of tractions.
+        // Spin and the creepage in the other direction would change the direction of tractions, so they are set to 0.
         (case.slide.spin, case.slide.amount) = (0.0, [0.0; 2]);
         case.slide.amount[k] = 0.5 * case.carried;
         found += usize::from(exceeded(&case).is_some());

@@ -1,9 +1,9 @@
-//! Faults of a map of heights by the instrument, by wear and by the mounting.
+//! Faults that a measured map of heights has because of the instrument, of wear, or of the mounting.
 
 use crate::grid::Grid;
 use crate::random::Random;
 
-/// Adds up to three faults to h, and returns their names. At least one element keeps a surface.
+/// Adds up to three faults to h, and returns their names. At least one element is not excluded.
 pub fn any(random: &mut Random, grid: &Grid, h: &mut [f64]) -> Vec<&'static str> {
     let mut names = Vec::new();
     let count = random.pick(&[0, 0, 1, 1, 1, 2, 2, 3]);
@@ -26,14 +26,14 @@ pub fn any(random: &mut Random, grid: &Grid, h: &mut [f64]) -> Vec<&'static str>
     names
 }
 
-/// The finite heights, sorted.
+/// The finite values of h, sorted.
 pub fn sorted(h: &[f64]) -> Vec<f64> {
     let mut finite: Vec<f64> = h.iter().copied().filter(|h| h.is_finite()).collect();
     finite.sort_by(f64::total_cmp);
     finite
 }
 
-/// The root of the mean square about the mean, or 1 where that is 0.
+/// The rms of the finite values of h about their mean, or 1 if it is 0.
 fn rms(h: &[f64]) -> f64 {
     let finite = || h.iter().filter(|h| h.is_finite());
     let n = finite().count().max(1) as f64;
@@ -46,6 +46,7 @@ fn rms(h: &[f64]) -> f64 {
     }
 }
 
+/// Adds a plane: the surface was mounted at an angle.
 fn tilt(random: &mut Random, grid: &Grid, h: &mut [f64]) -> &'static str {
     let size = rms(h) * random.decades(0.1, 1e3);
     let slopes = [random.between(-size, size) / grid.mx as f64, random.between(-size, size) / grid.my as f64];
@@ -54,14 +55,14 @@ fn tilt(random: &mut Random, grid: &Grid, h: &mut [f64]) -> &'static str {
     "tilt"
 }
 
-/// Heights of a converter with few bits.
+/// Rounds heights to multiples of a quantum, like a converter with few bits.
 fn quantise(random: &mut Random, h: &mut [f64]) -> &'static str {
     let quantum = rms(h) * random.decades(1e-3, 1.0);
     h.iter_mut().for_each(|h| *h = (*h / quantum).round() * quantum);
     "quantised"
 }
 
-/// Worn tops, or a range of the instrument that ends above the valleys.
+/// Cuts off the tops, which are worn, or the valleys, which are beyond the range of the instrument.
 fn plateau(random: &mut Random, h: &mut [f64]) -> &'static str {
     let finite = sorted(h);
     let Some(last) = finite.len().checked_sub(1) else { return "plateau" };
@@ -75,7 +76,7 @@ fn plateau(random: &mut Random, h: &mut [f64]) -> &'static str {
     }
 }
 
-/// One or many points above all others: dust, or errors of an interferometer on a slope.
+/// Adds points above all others: dust, or errors of an interferometer on a slope.
 fn spikes(random: &mut Random, h: &mut [f64]) -> &'static str {
     let (count, height) = (points(random, h.len()), rms(h) * random.decades(1.0, 1e4));
     let alike = random.chance(0.3);
@@ -88,7 +89,7 @@ fn spikes(random: &mut Random, h: &mut [f64]) -> &'static str {
     "spikes"
 }
 
-/// Points below all others.
+/// Lowers points.
 fn pits(random: &mut Random, h: &mut [f64]) -> &'static str {
     let (count, depth) = (points(random, h.len()), rms(h) * random.decades(1.0, 1e4));
     for _ in 0..count {
@@ -98,7 +99,7 @@ fn pits(random: &mut Random, h: &mut [f64]) -> &'static str {
     "pits"
 }
 
-/// A number of points: one, some, or a part of all.
+/// A random number of points out of n: one, some, or up to a tenth of all.
 fn points(random: &mut Random, n: usize) -> usize {
     match random.uniform() {
         u if u < 0.4 => 1,
@@ -107,7 +108,7 @@ fn points(random: &mut Random, n: usize) -> usize {
     }
 }
 
-/// An edge between two levels, in any direction.
+/// Adds a step between two levels, in a random direction.
 fn step(random: &mut Random, grid: &Grid, h: &mut [f64]) -> &'static str {
     let size = rms(h) * random.decades(0.1, 1e3);
     let angle: f64 = random.pick(&[0.0, 0.25, 0.5, 0.1]) * std::f64::consts::PI;
@@ -119,7 +120,7 @@ fn step(random: &mut Random, grid: &Grid, h: &mut [f64]) -> &'static str {
     "step"
 }
 
-/// Rows of a scan, each with a zero of its own.
+/// Adds a different constant to each row, like the zero error of a scan.
 fn stripes(random: &mut Random, grid: &Grid, h: &mut [f64]) -> &'static str {
     let size = rms(h) * random.decades(0.01, 1.0);
     let zeros: Vec<f64> = (0..grid.my).map(|_| random.between(-size, size)).collect();
@@ -127,7 +128,7 @@ fn stripes(random: &mut Random, grid: &Grid, h: &mut [f64]) -> &'static str {
     "stripes"
 }
 
-/// Elements without a surface: scattered, spots, a border, every so many columns, or the deepest.
+/// Excludes elements (h infinite): scattered ones, spots, the border, every second to fifth column, or the deepest ones.
 fn holes(random: &mut Random, grid: &Grid, h: &mut [f64]) -> &'static str {
     let Grid { mx, my, .. } = *grid;
     let (kind, part, every) = (random.integer(0, 4), random.decades(1e-3, 0.9), random.integer(2, 5));
@@ -153,6 +154,7 @@ fn holes(random: &mut Random, grid: &Grid, h: &mut [f64]) -> &'static str {
     "holes"
 }
 
+/// Adds a large constant.
 fn offset(random: &mut Random, h: &mut [f64]) -> &'static str {
     let by = rms(h) * random.decades(1.0, 1e6) * random.pick(&[1.0, -1.0]);
     h.iter_mut().for_each(|h| *h += by);

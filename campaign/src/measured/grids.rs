@@ -1,9 +1,9 @@
-//! Grids of instruments: squares of any size, strips, line scans, transposed ones and ones with slender elements.
+//! Random grids like those of instruments: squares of any size, strips and line scans, in x or in y, some with slender elements.
 
 use crate::grid::Grid;
 use crate::random::Random;
 
-/// An integer of a..=b, uniform in the logarithm; now and then a power of two.
+/// An integer in a..=b, whose logarithm is uniformly distributed. Sometimes it is rounded up to a power of two.
 fn count(random: &mut Random, a: usize, b: usize) -> usize {
     let value = random.decades(a as f64, b as f64 + 0.999) as usize;
     if random.chance(0.2) {
@@ -13,7 +13,7 @@ fn count(random: &mut Random, a: usize, b: usize) -> usize {
     }
 }
 
-/// Large grids are a small share, so that the mean time of a case is some tenths of a second.
+/// A random grid. Few grids are large, so that the mean time of a case is some tenths of a second.
 pub fn any(random: &mut Random) -> Grid {
     let (mx, my) = match random.uniform() {
         u if u < 0.12 => (count(random, 32, 9600), 1),

@@ -6,7 +6,7 @@ use crate::fft::synthesis;
 use crate::grid::Grid;
 use crate::random::Random;
 
-/// The name and h of a random surface.
+/// A random surface: its name, and undeformed distances.
 pub fn any(random: &mut Random, grid: &Grid) -> (String, Vec<f64>) {
     let (name, h) = match random.integer(0, 15) {
         0..=4 => ("self-affine", self_affine(random, grid)),
@@ -23,16 +23,16 @@ pub fn any(random: &mut Random, grid: &Grid) -> (String, Vec<f64>) {
     (name.into(), h)
 }
 
-/// x and y of the elements' centres, from the middle of the grid, over its half width.
+/// The centres of the elements, relative to the middle of the grid, in units of the grid's half width in each direction.
 fn centres(grid: &Grid) -> impl Iterator<Item = [f64; 2]> {
     let Grid { mx, my, .. } = *grid;
     let along = |i: usize, m: usize| (2 * i + 1) as f64 / m as f64 - 1.0;
     (0..mx * my).map(move |i| [along(i % mx, mx), along(i / mx, my)])
 }
 
-/// A self-affine surface of waves with random phases. Amplitudes go with the wave number to the power -(1 + Hurst exponent). They are constant
-/// below the roll-off, and 0 beyond the shortest wave. Distances are measured down from the highest point, with rms 1. The surface is periodic if
-/// the numbers of elements are powers of two.
+/// A self-affine surface of waves with random phases. The amplitudes are proportional to the wave number to the power -(1 + Hurst exponent), or -(1/2
+/// + Hurst exponent) for a line. They are constant below the roll-off wave number, and 0 above that of the shortest wave. Distances are measured down
+/// from the highest point, and their rms about the mean is 1. The surface is periodic if the numbers of elements are powers of two.
 pub fn self_affine(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let Grid { mx, my, .. } = *grid;
     let (nx, ny) = (mx.next_power_of_two(), my.next_power_of_two());
@@ -50,7 +50,7 @@ pub fn self_affine(random: &mut Random, grid: &Grid) -> Vec<f64> {
     from_the_top((0..mx * my).map(|i| z[(y0 + i / mx) * nx + x0 + i % mx]).collect())
 }
 
-/// Distances below the highest point, over the rms.
+/// Distances of heights z from the highest one, in units of the rms about the mean.
 fn from_the_top(z: Vec<f64>) -> Vec<f64> {
     let n = z.len() as f64;
     let (top, mean) = (z.iter().copied().fold(f64::NEG_INFINITY, f64::max), z.iter().sum::<f64>() / n);
@@ -59,13 +59,13 @@ fn from_the_top(z: Vec<f64>) -> Vec<f64> {
     z.into_iter().map(|z| (top - z) / size).collect()
 }
 
-/// White noise: uniform, or with a long tail to one side.
+/// White noise: uniformly distributed, or with a long tail to one side.
 fn noise(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let power = random.pick(&[1.0, 1.0, 0.1, 8.0]);
     (0..grid.len()).map(|_| random.uniform().powf(power)).collect()
 }
 
-/// Waves of two to ten elements, in one direction or in two.
+/// Waves with wave lengths of two to ten elements, in one direction or in two, and a long wave.
 fn waves(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let number = |random: &mut Random| match random.uniform() {
         u if u < 0.3 => random.pick(&[PI, 0.5 * PI, PI / 3.0, 2.0 * PI / 3.0]),
@@ -82,7 +82,8 @@ fn waves(random: &mut Random, grid: &Grid) -> Vec<f64> {
     (0..grid.len()).map(at).collect()
 }
 
-/// A punch: flat, curved or leaning within an outline whose edges may cut elements; outside a step, a slope, or no surface.
+/// A punch: flat, curved or inclined within an outline, which may cut elements. Outside the outline there is a step or a slope, or elements are
+/// excluded.
 fn punch(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let (a, b) = (random.between(0.05, 1.0), random.between(0.05, 1.0));
     let (x0, y0) = (random.between(-0.4, 0.4), random.between(-0.4, 0.4));
@@ -109,7 +110,7 @@ fn punch(random: &mut Random, grid: &Grid) -> Vec<f64> {
     centres(grid).map(at).collect()
 }
 
-/// Arcs of several radii across, like those of a wheel on a rail, and one arc along.
+/// A profile of several arcs in y, like that of a wheel on a rail, and one arc in x.
 fn profile(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let (along, corners) = (random.decades(1e-3, 1.0), random.integer(1, 6));
     let places: Vec<[f64; 2]> = (0..corners).map(|_| [random.between(-1.0, 1.0), random.decades(0.01, 10.0)]).collect();
@@ -121,7 +122,7 @@ fn profile(random: &mut Random, grid: &Grid) -> Vec<f64> {
     centres(grid).map(at).collect()
 }
 
-/// Ridges with gaps between them, which are deep or have no surface; some asperities rise above all.
+/// Ridges with gaps between them. The gaps are deep, or their elements are excluded. Some asperities are higher than the ridges.
 fn grating(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let (period, by_rows) = (random.integer(2, 5), random.chance(0.5));
     let (gap, rise) = (random.pick(&[1.0, 0.01, f64::INFINITY]), random.decades(1e-3, 1e2));
@@ -137,13 +138,13 @@ fn grating(random: &mut Random, grid: &Grid) -> Vec<f64> {
     (0..grid.len()).map(at).collect()
 }
 
-/// A pattern of few heights that repeats in both directions.
+/// A periodic pattern of a few heights.
 fn pattern(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let (a, b, k) = (random.integer(0, 4), random.integer(1, 4), random.integer(2, 7));
     (0..grid.len()).map(|i| ((a * (i % grid.mx) + b * (i / grid.mx)) % k) as f64).collect()
 }
 
-/// The tops of a rough surface, and no surface between them.
+/// The tops of a rough surface. All other elements are excluded.
 fn islands(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let h = self_affine(random, grid);
     let mut sorted = h.clone();
@@ -154,6 +155,7 @@ fn islands(random: &mut Random, grid: &Grid) -> Vec<f64> {
     h.into_iter().map(|h| if h <= level { top(h) } else { f64::INFINITY }).collect()
 }
 
+/// A paraboloid with a self-affine roughness.
 fn rough_ball(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let (roughness, rough) = (random.decades(1e-4, 1.0), self_affine(random, grid));
     let (a, b) = (random.decades(0.3, 3.0), random.decades(0.3, 3.0));

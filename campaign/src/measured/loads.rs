@@ -1,4 +1,4 @@
-//! Loads from one element in contact to full contact.
+//! Random loads, from one element in contact to full contact.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use super::faults::sorted;
 use crate::grid::{Grid, Load};
 use crate::random::Random;
 
-/// A load by approach or by force; `c` is the compliance over pi.
+/// A random approach or force; `c = 1/(pi E*)`.
 pub fn any(random: &mut Random, grid: &Grid, h: &[f64], c: f64, period: Option<(bool, bool)>) -> Load {
     let heights = sorted(h);
     if random.chance(0.5) {
@@ -16,7 +16,7 @@ pub fn any(random: &mut Random, grid: &Grid, h: &[f64], c: f64, period: Option<(
     }
 }
 
-/// The difference of the highest and the lowest point, or a length for a flat surface.
+/// The difference between the largest and the smallest undeformed distance. For a flat surface: 1e-3 of an element.
 fn depth(grid: &Grid, heights: &[f64]) -> f64 {
     let depth = heights[heights.len() - 1] - heights[0];
     if depth > 0.0 {
@@ -26,6 +26,7 @@ fn depth(grid: &Grid, heights: &[f64]) -> f64 {
     }
 }
 
+/// A random approach; `heights` has the finite distances, sorted.
 fn approach(random: &mut Random, grid: &Grid, heights: &[f64], period: Option<(bool, bool)>) -> Load {
     let (n, depth) = (heights.len(), depth(grid, heights));
     let lowest = heights[0];
@@ -44,14 +45,14 @@ fn approach(random: &mut Random, grid: &Grid, heights: &[f64], period: Option<(b
     })
 }
 
-/// Parts of the force that flattens the surface: `E*` times its slope and area, and the force that presses spikes down.
+/// A random force, relative to the force of order `E*` times slope times area that flattens the surface, or to the force that presses spikes down.
 fn force(random: &mut Random, grid: &Grid, h: &[f64], heights: &[f64], e_star: f64) -> Load {
     let Grid { mx, dx, dy, .. } = *grid;
     let (n, depth) = (heights.len(), depth(grid, heights));
     let (mut squares, mut count) = (0.0, 0.0);
     for i in 0..h.len() {
-        for (there, step, d) in [((i + 1) % mx != 0, 1, dx), (i + mx < h.len(), mx, dy)] {
-            if there && h[i].is_finite() && h[i + step].is_finite() {
+        for (has_neighbour, step, d) in [((i + 1) % mx != 0, 1, dx), (i + mx < h.len(), mx, dy)] {
+            if has_neighbour && h[i].is_finite() && h[i + step].is_finite() {
                 squares += ((h[i + step] - h[i]) / d).powi(2);
                 count += 1.0;
             }
@@ -59,20 +60,20 @@ fn force(random: &mut Random, grid: &Grid, h: &[f64], heights: &[f64], e_star: f
     }
     let flat = depth / (dx * (n as f64).sqrt());
     let slope = if squares > 0.0 { f64::sqrt(2.0 * squares / count) } else { flat };
-    let all = e_star * slope * n as f64 * grid.element_area();
+    let flattening_force = e_star * slope * n as f64 * grid.element_area();
     let second = heights.iter().copied().find(|h| *h > heights[0]).unwrap_or(heights[0] + depth);
     Load::Force(match random.uniform() {
         u if u < 0.01 => 0.0,
         // The force of a single element before the next one touches.
         u if u < 0.10 => e_star * (second - heights[0]) * dx.max(dy) * random.decades(1e-3, 1.0),
-        u if u < 0.5 => all * random.decades(1e-3, 3.0),
-        // Spikes pressed down to the plane of the others, and a part of the force of that plane.
+        u if u < 0.5 => flattening_force * random.decades(1e-3, 3.0),
+        // The force that presses spikes down to the level of the other elements, and a part of the force that flattens these.
         u if u < 0.8 => {
             let (level, spread) = (heights[n / 4], heights[3 * n / 4] - heights[n / 4]);
             let spikes = heights.iter().take_while(|h| **h < level - spread).count() as f64;
             let down = 2.0 * e_star * (level - heights[0]) * dx.max(dy) * f64::max(spikes, 1.0);
             down + e_star * spread / dx.max(dy) * n as f64 * grid.element_area() * random.decades(1e-3, 1.0)
         }
-        _ => all * random.decades(1e-5, 1e2),
+        _ => flattening_force * random.decades(1e-5, 1e2),
     })
 }

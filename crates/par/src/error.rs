@@ -1,9 +1,9 @@
 //! The error of this crate.
 
-/// An allocation failed, or the system starts no more threads. The message names the purpose.
+/// An allocation failed, or the system could not start more threads. The message says what the memory or the threads were for.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct OutOfMemory(pub String);
 
-/// Result with [`OutOfMemory`].
+/// A result whose error is [`OutOfMemory`].
 pub type Result<T> = std::result::Result<T, OutOfMemory>;

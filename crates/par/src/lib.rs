@@ -4,7 +4,7 @@
 //! use par::sums::Sums;
 //! use par::{memory, threads::Threads};
 //!
-//! // The caller's thread and one of a pool.
+//! // The caller's thread and one worker.
 //! let threads = Threads::new(2)?;
 //! // An array of 1e6 values, or an error that names its purpose.
 //! let mut values: Vec<f64> = memory::zeros(1_000_000, "the example")?;
@@ -12,16 +12,16 @@
 //! let mut sums = Sums::new();
 //! sums.add::<f64, 1, 0>([&values], [], |[x], []| [x, x * x]);
 //! assert_eq!(sums.values()[0], 1000.0 * (999.0 * 1000.0 / 2.0));
-//! // The memory serves the next array of this type and size.
+//! // The memory is kept for the next array of this type and size.
 //! memory::keep([&mut values]);
 //! # Ok::<(), par::OutOfMemory>(())
 //! ```
 //!
 //! | module | contents |
 //! |---|---|
-//! | [`threads`] | one pool for a process, and work in pieces: the bits of a result do not depend on the number of threads |
-//! | [`memory`] | arrays with fallible allocation, and memory kept for later arrays |
-//! | [`sums`] | sums in a fixed order, which the compiler can vectorise |
+//! | [`threads`] | the worker threads of a process; work is divided into pieces, so the bits of a result do not depend on the number of threads |
+//! | [`memory`] | arrays whose allocation returns an error if memory is short; the memory of released arrays is kept for later ones |
+//! | [`sums`] | sums in a fixed order, which the compiler can vectorise, and the smallest of values |
 
 #![warn(missing_docs)]
 #![deny(unsafe_code)]

@@ -1,22 +1,23 @@
-//! Sums over elements in lanes, for passes over slices of one length, and the least of values.
+//! Sums over the elements of slices of one length, and the smallest of values.
 //!
-//! Each sum is taken in lanes. Neither the lanes nor the bits of the sums depend on the threads or on the vectors of the machine. The functions are
-//! inlined. So a pass that is compiled for these vectors (`pulp`) includes them.
+//! Each sum is computed as several partial sums, the lanes, which are added at the end. So the compiler can use SIMD vectors. The number of lanes
+//! depends neither on the threads nor on the vectors of the machine, so the bits of the sums do not either. The functions are inlined: if a caller is
+//! compiled for the vectors of the machine (by `pulp`), so are they.
 
 use std::array::from_fn;
 
-/// Lanes of each sum, so that an addition does not wait for the previous one.
+/// The number of lanes of each sum of [`Sums`]. With several lanes an addition does not wait for the previous one.
 const LANES: usize = 4;
-/// Lanes of single sums and of comparisons.
+/// The number of lanes of [`sum_where`] and [`least`].
 const WIDE: usize = 8;
 
-/// Round-off of a sum of up to 2^31 terms in any order, relative to the sum of their absolute values.
+/// The round-off of a sum of up to 2^31 terms, in any order of this module, relative to the sum of their absolute values.
 pub const ROUND_OFF: f64 = 1e-12;
 
-/// Terms of a block.
+/// The number of terms of a block of [`in_blocks`].
 const BLOCK: usize = 512;
 
-/// Terms that are added in double precision.
+/// Values that are converted to double precision and added.
 pub trait Value: Copy {
     /// This value in double precision.
     fn to_double(self) -> f64;
@@ -34,7 +35,7 @@ macro_rules! value {
 }
 value!(f32, f64, bool);
 
-/// Sums over elements, in lanes.
+/// K sums over elements, each in lanes.
 pub struct Sums<const K: usize>([[f64; LANES]; K]);
 
 impl<const K: usize> Default for Sums<K> {
@@ -44,13 +45,15 @@ impl<const K: usize> Default for Sums<K> {
 }
 
 impl<const K: usize> Sums<K> {
-    /// Sums of no terms.
+    /// K sums without terms, which are 0.
     pub fn new() -> Sums<K> {
         Sums([[0.0; LANES]; K])
     }
 
-    /// Adds `terms(values of a, values of b)` of all elements of one or more slices of equal length. Lanes are loaded first: the compiler cannot
-    /// prove that indices into several slices are in range, and would not vectorise (3.5 times the time).
+    /// Adds the K terms `terms(values of a, values of b)` of each element. `a` and `b` are slices of equal length, at least one in all.
+    ///
+    /// The values of all lanes are loaded before the terms are computed. Otherwise the compiler could not prove that the indices are in range of all
+    /// slices, and would not vectorise the loop, which would take 3.5 times as long.
     #[inline(always)]
     pub fn add<T: Value, const A: usize, const B: usize>(
         &mut self,
@@ -79,13 +82,13 @@ impl<const K: usize> Sums<K> {
         self.0 = sums;
     }
 
-    /// The values of the sums.
+    /// The values of the K sums.
     pub fn values(&self) -> [f64; K] {
         self.0.map(|lanes| lanes.iter().sum())
     }
 }
 
-/// The sum of `a - from + b` over the elements that count, and their number, in lanes that the compiler vectorises.
+/// The sum of `a - from + b` over the elements for which `counts` is true, and the number of these elements. The compiler vectorises the loop.
 #[inline(always)]
 pub fn sum_where((a, from): (&[f64], f64), b: &[f64], counts: &[bool]) -> (f64, u64) {
     let term = |a: f64, b: f64, counts: bool| if counts { a - from + b } else { 0.0 };
@@ -101,28 +104,29 @@ pub fn sum_where((a, from): (&[f64], f64), b: &[f64], counts: &[bool]) -> (f64, 
     (sums.iter().sum::<f64>() + of_rest.sum::<f64>(), count)
 }
 
-/// The sum of the values of an iterator, in blocks whose sums are added. A single running sum of 262144 equal terms would have an error of 4e-12.
+/// The sum of the values of an iterator: adds the sums of blocks of values. One running sum of 262144 equal terms would have a relative error of
+/// 4e-12.
 pub fn in_blocks(mut values: impl Iterator<Item = f64>) -> f64 {
-    let (mut all, mut next) = (0.0, values.next());
+    let (mut total, mut next) = (0.0, values.next());
     while let Some(first) = next {
-        all += values.by_ref().take(BLOCK - 1).fold(first, |sum, value| sum + value);
+        total += values.by_ref().take(BLOCK - 1).fold(first, |sum, value| sum + value);
         next = values.next();
     }
-    all
+    total
 }
 
-/// The sum of products, one after the other.
+/// The sum of the products a_i b_i, added one after the other.
 #[inline]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The mean of values.
+/// The mean of values; NaN if there are none.
 pub fn mean(values: &[f64]) -> f64 {
     in_blocks(values.iter().copied()) / values.len() as f64
 }
 
-/// The lesser of two values; the second if they are equal, for any sign of zero.
+/// The smaller of two values. It is b if both are equal (also for zeros of different signs), or if one is NaN.
 #[inline(always)]
 pub fn lesser(a: f64, b: f64) -> f64 {
     if a < b {
@@ -132,7 +136,7 @@ pub fn lesser(a: f64, b: f64) -> f64 {
     }
 }
 
-/// The least of some values that are not NaN; infinite if there are none. In lanes that the compiler vectorises.
+/// The smallest of all values that are not NaN; infinite if there are none. The compiler vectorises the loop.
 #[inline(always)]
 pub fn least(values: &[f64]) -> f64 {
     let (lanes, rest) = pulp::as_arrays::<WIDE, f64>(values);

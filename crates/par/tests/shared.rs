@@ -1,4 +1,4 @@
-//! Data that all threads of a process share: no thread waits for one that may not exist, as in a process forked meanwhile.
+//! Data that the threads of a process share: no thread waits for another one. In a forked child that other thread would not exist.
 
 use std::sync::mpsc::channel;
 use std::sync::OnceLock;
@@ -6,7 +6,7 @@ use std::thread::scope;
 
 use par::threads::{made_once, Shared};
 
-/// Another thread makes the value, and does not end before this one has it.
+/// Another thread begins to make the value. It does not finish before this thread has made one.
 #[test]
 fn a_value_that_another_thread_makes_is_not_waited_for() {
     static PLACE: OnceLock<i32> = OnceLock::new();

@@ -1,5 +1,5 @@
-//! The kernel of the fused product: blocks of columns of a row-major matrix, shared among threads, and prefetches. Only this
-//! file has unsafe code.
+//! Blocks of columns of a row-major matrix, which threads read and write at the same time, and prefetches. This is the only file of the crate with
+//! unsafe code.
 
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -7,17 +7,18 @@ use std::ops::Range;
 use crate::real::{Complex, Scalar};
 use par::threads::Threads;
 
-/// Columns in a block. A row of a block of complex numbers has four cache lines in double precision, two in single.
+/// The number of columns in a block. A row of a block of complex numbers has four cache lines in double precision, two in single.
 pub const BLOCK: usize = 16;
-/// Rows that are gathered at a time.
+/// The number of rows that are gathered at a time.
 const TILE: usize = 8;
 
-/// Least length of columns with a gap of [`GAP`] behind them: otherwise columns would be a power of two apart, and would share few lines of the
-/// nearest cache.
+/// The least length of columns that have a gap of [`GAP`] values behind them. Without a gap the starts of columns could be a power of two apart. Then
+/// they would share few lines of the first-level cache.
 const LONG: usize = 512;
+/// The gap behind a long column, in values.
 const GAP: usize = 8;
 
-/// Values from the start of a column in a block to that of the next.
+/// The distance between the starts of two neighbouring columns of this length, in values.
 pub fn room_of_column(length: usize) -> usize {
     if length < LONG {
         length
@@ -26,23 +27,23 @@ pub fn room_of_column(length: usize) -> usize {
     }
 }
 
-/// The interleaved real and imaginary parts of complex values.
+/// Complex values as a slice of real numbers, in which real and imaginary parts alternate.
 pub fn parts<T: Scalar>(values: &[Complex<T>]) -> &[T] {
     // SAFETY: a Complex is two values of T in the order of C (`repr(C)`), so the slice holds twice as many of them.
     unsafe { std::slice::from_raw_parts(values.as_ptr().cast(), 2 * values.len()) }
 }
 
-/// The mutable [`parts`].
+/// [`parts`] of mutable values.
 pub fn parts_mut<T: Scalar>(values: &mut [Complex<T>]) -> &mut [T] {
     // SAFETY: as above; the values are borrowed mutably.
     unsafe { std::slice::from_raw_parts_mut(values.as_mut_ptr().cast(), 2 * values.len()) }
 }
 
-/// Bytes of a line of the caches; the longest vector has as many. Longer lines are prefetched twice.
+/// Bytes of a cache line, and of the longest vector. On machines with longer lines each line is prefetched more than once.
 pub(crate) const LINE: usize = 64;
 
-/// Prefetches `count` values from `first` on during other work. This is a hint, valid for any address; if `first` is not at the start of a line, the
-/// last line is left out.
+/// Tells the processor to load `count` values from `first` on into the cache, while it does other work. Any address is allowed. If `first` is not at
+/// the start of a line, the last line is left out.
 #[inline(always)]
 pub fn prefetch<V>(first: *const V, count: usize) {
     #[cfg(target_arch = "x86_64")]
@@ -55,12 +56,17 @@ pub fn prefetch<V>(first: *const V, count: usize) {
     let _ = (first, count, LINE);
 }
 
-/// One block of columns of a row-major matrix. Blocks do not overlap.
+/// One block of columns of a row-major matrix, which it borrows mutably. Blocks do not overlap.
 pub struct Block<'a, T> {
+    /// The matrix.
     data: *mut Complex<T>,
+    /// The rows of the matrix.
     rows: usize,
+    /// The columns of the matrix.
     width: usize,
+    /// The first column of the block.
     first: usize,
+    /// The number of columns of the block.
     columns: usize,
     owner: PhantomData<&'a mut [Complex<T>]>,
 }
@@ -68,7 +74,7 @@ pub struct Block<'a, T> {
 // SAFETY: a block is a mutable borrow of its columns, which no other block has.
 unsafe impl<T: Send> Send for Block<'_, T> {}
 
-/// The columns `columns` of the matrix `data`, `width` columns wide, in blocks of `count`; the last may have fewer.
+/// Cuts the columns `columns` of the matrix `data`, which is `width` columns wide, into blocks of `count` columns. The last block may have fewer.
 pub fn blocks_of<'a, T: Scalar>(
     data: &'a mut [Complex<T>],
     width: usize,
@@ -80,7 +86,8 @@ pub fn blocks_of<'a, T: Scalar>(
     columns.step_by(count).map(move |first| matrix.part(first, count.min(end - first)))
 }
 
-/// Calls `work` on each block of columns of the matrix `data`, `width` columns wide, with the scratch of the thread that works on it.
+/// Calls `work(block, scratch)` on each block of [`BLOCK`] columns of the matrix `data`, which is `width` columns wide. `scratch` is that of the
+/// thread that calls it.
 pub fn for_each_block<T: Scalar, S: Send>(
     data: &mut [Complex<T>],
     width: usize,
@@ -92,19 +99,19 @@ pub fn for_each_block<T: Scalar, S: Send>(
 }
 
 impl<'a, T: Scalar> Block<'a, T> {
-    /// All columns of a matrix.
+    /// The block of all columns of a matrix, which is `width` columns wide.
     pub fn of(data: &'a mut [Complex<T>], width: usize) -> Block<'a, T> {
         assert_eq!(data.len() % width, 0);
         Block { rows: data.len() / width, data: data.as_mut_ptr(), width, first: 0, columns: width, owner: PhantomData }
     }
 
-    /// A part of the columns. Callers give each column to one block, and do not use this one.
+    /// The block of a part of these columns. Callers give each column to one block only, and do not use this block itself.
     fn part(&self, first: usize, columns: usize) -> Block<'a, T> {
         assert!(first >= self.first && first + columns <= self.first + self.columns);
         Block { first, columns, ..*self }
     }
 
-    /// The first column.
+    /// The first column of the block in the matrix.
     pub fn first(&self) -> usize {
         self.first
     }
@@ -119,7 +126,7 @@ impl<'a, T: Scalar> Block<'a, T> {
         self.rows
     }
 
-    /// Copies rows `rows` to `out`, whose columns are `length` long and zero elsewhere.
+    /// Copies the rows `rows` of the block to `out`, column after column. The columns of `out` are `length` long, and zero in all other rows.
     pub fn gather(&self, rows: Range<usize>, length: usize, out: &mut [Complex<T>]) {
         let columns = self.columns();
         assert!(rows.end <= self.rows.min(length) && out.len() >= columns * length);
@@ -145,7 +152,7 @@ impl<'a, T: Scalar> Block<'a, T> {
         }
     }
 
-    /// Copies the columns in `from`, at most [`BLOCK`], each `length` long, to rows `rows`.
+    /// Copies the values of the rows `rows` from the columns in `from` to the block. There are at most [`BLOCK`] columns, each `length` long.
     pub fn scatter(&mut self, rows: Range<usize>, length: usize, from: &[Complex<T>]) {
         let columns = self.columns();
         assert!(columns <= BLOCK && rows.end <= self.rows.min(length) && from.len() >= columns * length);
@@ -179,7 +186,7 @@ impl<'a, T: Scalar> Block<'a, T> {
         unsafe { std::slice::from_raw_parts(self.data.add(row * self.width + self.first), self.columns()) }
     }
 
-    /// Prefetches part k of n of the block's part of a row, if there is such a row.
+    /// Prefetches one of n equal parts, number k, of the block's part of a row. Does nothing if there is no such row.
     #[inline(always)]
     pub fn prefetch(&self, row: usize, (k, n): (usize, usize)) {
         if row < self.rows {

@@ -1,5 +1,5 @@
-//! Passes of transforms, compiled in this crate, once for each precision. Generic passes would be compiled again in each build of a crate that
-//! multiplies. That takes two fifths of the optimiser's time.
+//! The passes of transforms (loops over rows or columns), compiled in this crate once for each precision. Generic passes would be compiled again in
+//! each crate that uses products, which would take two fifths of its optimisation time.
 
 use std::sync::Arc;
 
@@ -13,11 +13,11 @@ use crate::real::Scalar;
 
 macro_rules! passes {
     ($($(#[$doc:meta])* $name:ident: $pass:ty;)*) => {
-        /// `f32` or `f64`, with the passes of this precision by the instructions `arch`.
+        /// A real number, `f32` or `f64`, with the passes of this precision. Each pass uses the instruction set `arch`.
         pub trait Real: Scalar {
             $($(#[$doc])* fn $name(arch: Arch, pass: $pass);)*
 
-            /// Plans of rustfft for columns of length `n`: forward, and the inverse.
+            /// The plans of rustfft for columns of length `n`: of the transform and of its inverse.
             fn plans(n: usize) -> [Arc<dyn Fft<Self>>; 2];
         }
         passes!(@of f32: $($name: $pass;)*);
@@ -38,20 +38,20 @@ macro_rules! passes {
 }
 
 passes!(
-    /// Rows to bins.
+    /// Transforms rows to bins.
     rows_forward: Forward<'_, '_, Self>;
-    /// Bins to rows.
+    /// Transforms bins back to rows.
     rows_inverse: Inverse<'_, '_, Self>;
-    /// Columns times an even symbol.
+    /// Multiplies columns by an even symbol.
     by_even: Multiply<'_, Self, EvenSymbol<'_, Self>, 1>;
-    /// Columns times an even symbol, displaced.
+    /// Multiplies columns by an even symbol and a complex factor for each column, for displacements further on in x.
     by_even_displaced: Multiply<'_, Self, Displaced<'_, Self, EvenSymbol<'_, Self>>, 1>;
-    /// Columns times a complex symbol.
+    /// Multiplies columns by a complex symbol.
     by_complex: Multiply<'_, Self, ComplexSymbol<'_, Self>, 1>;
-    /// Columns of two components times a real matrix.
+    /// Multiplies columns of two components by a real matrix for each bin.
     by_matrix: Multiply<'_, Self, RealMatrix<'_, Self>, 2>;
-    /// Columns of two components times a real matrix, displaced.
+    /// Multiplies columns of two components by a real matrix for each bin and a complex factor for each column, for displacements further on in x.
     by_matrix_displaced: Multiply<'_, Self, Displaced<'_, Self, RealMatrix<'_, Self>>, 2>;
-    /// Columns of two components times a complex matrix.
+    /// Multiplies columns of two components by a complex matrix for each bin.
     by_complex_matrix: Multiply<'_, Self, ComplexMatrix<'_, Self>, 2>;
 );

@@ -1,7 +1,7 @@
-//! Plans of transforms, shared by all threads of the process: a second product of the same period costs no planning.
+//! Plans of transforms, which all threads of the process share. A second product of the same period needs no planning.
 //!
-//! A plan depends on its length only, so that no bit of a result depends on earlier plans. Beyond the bound of kept plans the least recently used
-//! are dropped first; plans in use live until their last user drops them.
+//! A plan depends on its length only, so no bit of a result depends on earlier plans. If the kept plans exceed a number of bytes, the least recently
+//! used plans are removed from the list. A plan that a product still uses is freed with the product.
 
 use std::any::{Any, TypeId};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -13,20 +13,22 @@ use par::Result;
 /// The name of this memory in messages.
 pub(crate) const PLAN: &str = "the plans of transforms";
 
-/// Default bound on the bytes of kept plans: those of periods up to 4096 x 4096 take less than 2 MiB.
+/// The default of the largest number of bytes of kept plans. The plans of periods up to 4096 x 4096 take less than 2 MiB.
 const MOST_KEPT: usize = 16 << 20;
-/// The caller's bound on the bytes of kept plans.
+/// The present largest number of bytes of kept plans.
 static ALLOWED: AtomicUsize = AtomicUsize::new(MOST_KEPT);
 
-/// Tables of a length, computed once.
+/// The tables of a transform of one length.
 pub(crate) trait Plan: Any + Send + Sync {
-    /// Bytes held.
+    /// The bytes of the tables.
     fn bytes(&self) -> usize;
 }
 
-/// A plan and its bytes.
+/// A kept plan.
 struct Known {
-    kind: TypeId,
+    /// The type of the plan.
+    type_id: TypeId,
+    /// The length of the transform.
     length: usize,
     bytes: usize,
     plan: Arc<dyn Any + Send + Sync>,
@@ -35,7 +37,7 @@ struct Known {
 /// The kept plans, least recently used first.
 static KNOWN: Shared<Vec<Known>> = Shared::new(Vec::new());
 
-/// The plan of a length, made at the first call.
+/// The plan of type P and this length. The first call makes it.
 pub(crate) fn shared<P: Plan>(length: usize, make: impl FnOnce() -> Result<P>) -> Result<Arc<P>> {
     if let Some(known) = find(length) {
         return Ok(known);
@@ -44,24 +46,24 @@ pub(crate) fn shared<P: Plan>(length: usize, make: impl FnOnce() -> Result<P>) -
     let plan = Arc::new(make()?);
     let bytes = plan.bytes();
     if let Some(mut known) = KNOWN.lock() {
-        known.push(Known { kind: TypeId::of::<P>(), length, bytes, plan: plan.clone() });
+        known.push(Known { type_id: TypeId::of::<P>(), length, bytes, plan: plan.clone() });
         shrink(&mut known);
     }
     Ok(plan)
 }
 
-/// Drops the least recently used plans beyond the bound.
+/// Removes the least recently used plans until the others have at most [`ALLOWED`] bytes.
 fn shrink(known: &mut Vec<Known>) {
-    let (mut all, most) = (known.iter().map(|known| known.bytes).sum::<usize>(), ALLOWED.load(Ordering::Relaxed));
-    let mut old = 0;
-    while all > most && old < known.len() {
-        all -= known[old].bytes;
-        old += 1;
+    let (mut bytes, most) = (known.iter().map(|known| known.bytes).sum::<usize>(), ALLOWED.load(Ordering::Relaxed));
+    let mut removed = 0;
+    while bytes > most && removed < known.len() {
+        bytes -= known[removed].bytes;
+        removed += 1;
     }
-    known.drain(..old);
+    known.drain(..removed);
 }
 
-/// Sets the bound on the bytes of kept plans.
+/// Sets the largest number of bytes of kept plans.
 pub fn keep_at_most(bytes: usize) {
     ALLOWED.store(bytes, Ordering::Relaxed);
     if let Some(mut known) = KNOWN.lock() {
@@ -69,22 +71,23 @@ pub fn keep_at_most(bytes: usize) {
     }
 }
 
-/// The kept plan of a length, if any.
+/// The kept plan of type P and this length, if there is one.
 pub(crate) fn find<P: Plan>(length: usize) -> Option<Arc<P>> {
     let mut known = KNOWN.lock()?;
-    let i = known.iter().position(|known| known.length == length && known.kind == TypeId::of::<P>())?;
+    let i = known.iter().position(|known| known.length == length && known.type_id == TypeId::of::<P>())?;
+    // The plan moves to the end of the list: it is the most recently used one.
     known[i..].rotate_left(1);
     known.last()?.plan.clone().downcast().ok()
 }
 
-/// Drops all plans. Plans in use live until their last user drops them.
+/// Removes all kept plans. A plan that a product still uses is freed with the product.
 pub fn release() {
     if let Some(mut known) = KNOWN.lock() {
         *known = Vec::new();
     }
 }
 
-/// Bytes of the kept plans.
+/// The bytes of the kept plans.
 pub fn kept() -> usize {
     KNOWN.lock().map_or(0, |known| known.iter().map(|known| known.bytes).sum())
 }

@@ -1,4 +1,4 @@
-//! Values of single and double precision, and complex numbers of them.
+//! Real numbers of single and double precision, and complex numbers of both.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ pub use rustfft::num_complex::Complex;
 
 use crate::fft::lanes::Lanes;
 
-/// `f32` or `f64`: the values of the arithmetic.
+/// A real number, `f32` or `f64`.
 pub trait Scalar:
     Value + Lanes + FftNum + Float + FromPrimitive + Default + std::iter::Sum + std::ops::AddAssign
 {

@@ -1,12 +1,12 @@
-//! The y direction of a product by a matrix that is Toeplitz in x only: rows of the grid have coefficients of their own.
+//! The y direction of a product by a matrix that is Toeplitz in x only: each pair of a loaded row jy and a displaced row iy has its coefficients.
 //!
 //! ```text
 //! u^(iy, kx) = sum over jy of S_kx(jy, iy) p^(jy, kx),     ^: the transform in x
 //! ```
 //!
-//! Each of the `px/2 + 1` bins kx has a matrix of my by my: real if the coefficients are even in x, else a real and an imaginary one. These are
-//! some `my^2 mx` numbers, twice as many if not even. A product multiplies each number in the loaded rows by a complex number. Reading the matrices
-//! takes longer than the transforms.
+//! Each of the `px/2 + 1` bins kx has a matrix S_kx of my by my numbers. It is real if the coefficients are even in x, otherwise complex. All
+//! matrices together have about `my^2 mx` real numbers, or twice as many. A product multiplies each of them, in the loaded rows, by a complex number.
+//! Reading the matrices takes longer than the transforms.
 
 use std::ops::Range;
 
@@ -25,29 +25,29 @@ use par::{OutOfMemory, Result};
 /// The name of this memory in messages.
 const MATRICES: &str = "the row tables' transforms";
 
-/// Coefficients: the displacements of the elements of a row iy by the elements of a loaded row jy.
+/// The coefficients of a matrix that is Toeplitz in x only: the displacements of the elements in row iy by unit loads on the elements of row jy.
 pub struct OfRows<F> {
     /// Whether the coefficients are even in x.
     pub are_even: bool,
-    /// `fill(jy, iy, values)` gives even coefficients at offsets `(0..)`, others over a period: offsets >= 0 first, negative ones at its end, 0
-    /// between.
+    /// `fill(jy, iy, values)` fills `values` with the coefficients of the loaded row jy and the displaced row iy. Even coefficients are given at the
+    /// offsets kx = 0 .. mx. Others are given over a period: offsets kx >= 0 first, negative offsets at the end, and 0 between.
     pub fill: F,
     /// A factor on all coefficients.
     pub factor: f64,
 }
 
-/// The matrices, with the normalisation `1/px`.
+/// The matrices of all bins in x, including the normalisation `1/px`.
 pub(crate) struct RowMatrices<T: Real> {
-    /// Rows of the grid.
+    /// The number of rows of the grid.
     my: usize,
-    /// Matrices of a bin: 1, real, or 2, real and imaginary.
+    /// The number of real matrices that a bin has: 1 (real) or 2 (the real and the imaginary part).
     planes: usize,
     /// `[bin][plane][jy][iy]`.
     values: Vec<T>,
 }
 
 impl<T: Real> RowMatrices<T> {
-    /// The matrices of coefficients on a grid, with a period in x.
+    /// Computes the matrices of coefficients on a grid, with the period `px` in x.
     pub fn new<F: Fn(usize, usize, &mut [f64]) + Sync + Send>(
         (mx, my): (usize, usize),
         of: &OfRows<F>,
@@ -57,21 +57,22 @@ impl<T: Real> RowMatrices<T> {
         let rows = RowTransform::<f64>::new(px)?;
         let (nb, planes) = (rows.bins(), if of.are_even { 1 } else { 2 });
         let mut values = matrices(my, planes, nb)?;
-        let mut of_row: Vec<Complex<f64>> = zeros(my * nb, MATRICES)?;
+        // The transforms in x of the coefficients of one loaded row, `[iy][bin]`.
+        let mut bins_of_row: Vec<Complex<f64>> = zeros(my * nb, MATRICES)?;
         let piece = |_| Ok((zeros(px, MATRICES)?, rows.scratch()?));
         let mut pieces: Vec<(Vec<f64>, Vec<_>)> = (0..threads.count()).map(piece).collect::<Result<_>>()?;
         let scale = of.factor / px as f64;
         for jy in 0..my {
-            threads.for_each_row(&mut of_row, nb, &mut pieces, |iy, bins, (row, scratch)| {
+            threads.for_each_row(&mut bins_of_row, nb, &mut pieces, |iy, bins, (row, scratch)| {
                 match of.are_even {
                     true => fill_period(0, mx, row, Parity::Even, |_, row| (of.fill)(jy, iy, row)),
                     false => (of.fill)(jy, iy, row),
                 }
                 rows.forward(row, bins, scratch);
             });
-            let of_row = &of_row[..];
+            let bins_of_row = &bins_of_row[..];
             threads.for_each_row(&mut values, planes * my * my, &mut pieces, |bin, matrices, _| {
-                let column = of_row[bin..].iter().step_by(nb);
+                let column = bins_of_row[bin..].iter().step_by(nb);
                 for plane in 0..planes {
                     let parts = column.clone().map(|value| if plane == 0 { value.re } else { value.im });
                     let row = &mut matrices[(plane * my + jy) * my..][..my];
@@ -82,13 +83,13 @@ impl<T: Real> RowMatrices<T> {
         Ok(RowMatrices { my, planes, values })
     }
 
-    /// The matrices in another precision, times a factor.
+    /// Converts the matrices to another precision, and multiplies them by a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<RowMatrices<S>> {
         let values = computed(self.values.iter().map(|value| S::of(factor * value.to_double())), MATRICES)?;
         Ok(RowMatrices { my: self.my, planes: self.planes, values })
     }
 
-    /// Bytes held.
+    /// The bytes of the matrices.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.values[..])
     }
@@ -99,7 +100,7 @@ impl<T: Real> RowMatrices<T> {
         Room { row: room.row.max(2 * self.my), ..room }
     }
 
-    /// Multiplies rows transformed in x, of which `loaded` hold values.
+    /// Multiplies the bins of rows by the matrices. Only the rows `loaded` hold values before.
     pub fn apply(&self, rows: &Rows<T>, loaded: Range<usize>, memory: &mut Memory<T>) {
         let Memory { bins, pieces, .. } = memory;
         let (nb, length) = (rows.transform.bins(), self.my);
@@ -115,7 +116,7 @@ impl<T: Real> RowMatrices<T> {
         });
     }
 
-    /// Multiplies one column, that of x bin `bin`, which holds pressures in rows `loaded` only.
+    /// Multiplies one column, that of bin `bin` in x, by its matrix. Only the rows `loaded` hold values before. `sums` is scratch.
     fn multiply(&self, bin: usize, loaded: Range<usize>, column: &mut [Complex<T>], sums: &mut [T]) {
         let my = self.my;
         let (re, im) = sums[..2 * my].split_at_mut(my);
@@ -124,7 +125,7 @@ impl<T: Real> RowMatrices<T> {
         let matrices = &self.values[bin * self.planes * my * my..][..self.planes * my * my];
         add(&matrices[..my * my], loaded.clone(), |jy| column[jy], re, im);
         if self.planes == 2 {
-            // i p
+            // The imaginary matrix times i p.
             add(&matrices[my * my..], loaded, |jy| Complex::new(-column[jy].im, column[jy].re), re, im);
         }
         for ((value, re), im) in column.iter_mut().zip(&*re).zip(&*im) {
@@ -139,14 +140,15 @@ impl<T: Real> Drop for RowMatrices<T> {
     }
 }
 
-/// Memory for the matrices, all written before it is read.
+/// Allocates memory for the matrices. The caller writes each value before it is read.
 fn matrices<T: Real>(my: usize, planes: usize, bins: usize) -> Result<Vec<T>> {
     let size = (my * my).checked_mul(planes * bins);
     let size = size.ok_or_else(|| OutOfMemory(format!("no memory for {my} * {my} * {bins} values of {MATRICES}")))?;
     blank(size, T::nan(), MATRICES)
 }
 
-/// `u = u + M p`, row after row of M, four at a time.
+/// Adds the product of a real matrix and complex values p to the sums `re` and `im`. Row jy of `matrix` belongs to the loaded row jy; `p(jy)` is its
+/// value. Four rows are added at a time.
 fn add<T: Real>(matrix: &[T], loaded: Range<usize>, p: impl Fn(usize) -> Complex<T>, re: &mut [T], im: &mut [T]) {
     let my = re.len();
     let row = |jy: usize| &matrix[jy * my..(jy + 1) * my];

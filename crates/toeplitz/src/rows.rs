@@ -1,4 +1,4 @@
-//! The transforms in x: of the rows with pressures, and back to all rows.
+//! The transforms in x of a product: of the rows with pressures to bins, and of the bins back to all rows.
 
 use std::ops::Range;
 
@@ -14,30 +14,30 @@ use par::Result;
 
 use crate::workspace::{Memory, Piece, Room};
 
-/// Rows of a grid, padded to the period in x.
+/// The transforms of the rows of a grid, padded with zeros to the period in x.
 pub struct Rows<T: Real> {
-    /// Elements in x.
+    /// The number of elements in x.
     pub mx: usize,
-    /// Elements in y.
+    /// The number of elements in y.
     pub my: usize,
-    /// The transform of one row.
+    /// The transforms of rows without lanes.
     pub transform: RowTransform<T>,
     /// The threads of the transforms.
     pub threads: Threads,
 }
 
 impl<T: Real> Rows<T> {
-    /// Plans for rows of a period.
+    /// Makes the plans for rows of a period.
     pub fn new((mx, my): (usize, usize), period: usize, threads: &Threads) -> Result<Rows<T>> {
         Ok(Rows { mx, my, transform: RowTransform::new(period)?, threads: threads.clone() })
     }
 
-    /// The memory of products whose columns are not in lanes, with `scratch` values for columns.
+    /// The sizes of the memory of products without lanes. `scratch` is the number of scratch values that columns need.
     pub fn room(&self, period_in_y: usize, scratch: usize) -> Room {
         self.room_with(None, period_in_y, scratch)
     }
 
-    /// The memory of products, with transforms in lanes or without.
+    /// The sizes of the memory of products that may use the transforms `lanes`, if there are any.
     pub(crate) fn room_with(&self, lanes: Option<&LaneRows<T>>, period_in_y: usize, scratch: usize) -> Room {
         Room {
             bins: self.bins(lanes),
@@ -48,12 +48,12 @@ impl<T: Real> Rows<T> {
         }
     }
 
-    /// Rows that are transformed together.
+    /// The number of rows that are transformed together.
     fn at_a_time(&self, lanes: Option<&LaneRows<T>>) -> usize {
         lanes.map_or(self.transform.at_a_time(), LaneRows::at_a_time)
     }
 
-    /// The blocks of bins in lanes, which begin at a line of the cache, and the buffers of the threads.
+    /// The bins in lanes, as blocks of columns, and the buffers of the threads. The bins begin at the start of a cache line.
     pub(crate) fn blocks_of_bins<'a>(
         &self,
         lanes: &LaneRows<T>,
@@ -63,18 +63,18 @@ impl<T: Real> Rows<T> {
         (&mut bins[..lanes.bins_of(self.my)], &mut memory.pieces)
     }
 
-    /// Number of bins of all rows, with transforms in lanes or without.
+    /// The number of bins of all rows: that with lanes, if there are any, or that without, whichever is larger.
     fn bins(&self, lanes: Option<&LaneRows<T>>) -> usize {
-        let in_vectors = lanes.map_or(0, |lanes| lanes.bins_of(self.my) + before_a_line::<T>());
-        in_vectors.max(self.my * self.transform.bins())
+        let in_lanes = lanes.map_or(0, |lanes| lanes.bins_of(self.my) + before_a_line::<T>());
+        in_lanes.max(self.my * self.transform.bins())
     }
 
-    /// Length of the transforms' scratch, in lanes or without.
+    /// The length of the transforms' scratch, with lanes or without, whichever is larger.
     fn scratch_length(&self, lanes: Option<&LaneRows<T>>) -> usize {
         lanes.map_or(0, LaneRows::scratch_length).max(self.transform.scratch_length())
     }
 
-    /// Transforms the rows with values, in lanes or without. Returns these rows.
+    /// Transforms the rows of p that have values, in lanes if there are any. Returns the range of these rows.
     pub(crate) fn forward(&self, p: &[T], memory: &mut Memory<T>, lanes: Option<&LaneRows<T>>) -> Range<usize> {
         let (loaded, together, mx) = (rows_with_pressure(p, self.mx), self.at_a_time(lanes), self.mx);
         if let Some(lanes) = lanes {
@@ -96,12 +96,12 @@ impl<T: Real> Rows<T> {
         loaded
     }
 
-    /// Transforms all rows back to u, in lanes or without.
+    /// Transforms all rows back to u, in lanes if there are any.
     pub(crate) fn back(&self, u: &mut [T], memory: &mut Memory<T>, lanes: Option<&LaneRows<T>>) {
         self.each_back(u, memory, lanes, |_, u, piece, inverse| inverse(u, &mut piece.scratch));
     }
 
-    /// Transforms all rows back; `write(first element, values of u, values)` gets some rows at a time.
+    /// Transforms all rows back, and calls `write(first element, values of u, transformed values)` for each group of rows.
     pub(crate) fn back_with(
         &self,
         u: &mut [T],
@@ -117,7 +117,8 @@ impl<T: Real> Rows<T> {
         });
     }
 
-    /// Calls `work(i, values of u, piece, inverse)` for each group of rows transformed together; `inverse(rows, scratch)` transforms a group.
+    /// Calls `work(i, values of u, piece, inverse)` for each group i of rows that are transformed together. `inverse(rows, scratch)` transforms the
+    /// bins of this group back to `rows`.
     fn each_back(
         &self,
         u: &mut [T],
@@ -144,7 +145,7 @@ impl<T: Real> Rows<T> {
     }
 }
 
-/// The range of rows outside of which `p` is zero.
+/// The smallest range of rows outside of which `p` is zero.
 fn rows_with_pressure<T: Real>(p: &[T], mx: usize) -> Range<usize> {
     // The whole row is read, without an early end: the compiler vectorises this loop.
     let loaded = |row: &[T]| row.iter().fold(false, |any, &value| any | (value != T::zero()));

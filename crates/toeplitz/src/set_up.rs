@@ -1,6 +1,8 @@
-//! The computation of a symbol, in double precision for either precision of the operator: transforms in x of all rows of coefficients, then in y
-//! of blocks of columns. Two columns with real transforms share a complex one, as its real and imaginary parts. Here rows and columns are
-//! transformed one by one; [`set_up_lanes`](crate::set_up_lanes) does even coefficients in lanes.
+//! Computes the symbol of a product, in double precision whatever the precision of the product.
+//!
+//! All rows of coefficients are transformed in x, then blocks of columns in y. Two columns with real transforms become the real and the imaginary
+//! part of one complex column. This module transforms rows and columns without SIMD lanes; [`set_up_lanes`](crate::set_up_lanes) computes the symbol
+//! of even coefficients in lanes.
 
 use crate::coefficients::{Coefficients, Even, Parity};
 use crate::fft::any_length::ColumnTransform;
@@ -16,11 +18,14 @@ use par::Result;
 /// The name of this memory in messages.
 pub(crate) const COEFFICIENTS: &str = "the influence coefficients";
 
-/// The memory of a symbol's computation, kept by operators whose coefficients change often.
+/// The memory of a symbol's computation. Operators whose coefficients change often keep it for the next computation.
 #[derive(Default)]
 pub struct SetUp {
+    /// Even coefficients transformed in x, without lanes.
     real: Vec<f64>,
+    /// Coefficients transformed in x: any others, and even ones in lanes.
     pub(crate) complex: Vec<Complex<f64>>,
+    /// The buffers of the threads.
     pub(crate) pieces: Vec<Piece>,
 }
 
@@ -31,17 +36,21 @@ impl Drop for SetUp {
     }
 }
 
-/// The memory of one piece of the work.
+/// The buffers of one thread.
 #[derive(Default)]
 pub(crate) struct Piece {
+    /// Values of the rows that are transformed together.
     pub(crate) row: Vec<f64>,
+    /// A block of columns, or the bins of rows.
     pub(crate) column: Vec<Complex<f64>>,
+    /// Scratch of the transforms of rows.
     pub(crate) rows: Vec<Complex<f64>>,
+    /// Scratch of the transforms of columns.
     columns: Vec<Complex<f64>>,
 }
 
 impl Piece {
-    /// Allocates memory for values of rows, for a column or the bins of rows, and for scratch of rows.
+    /// Allocates `row` values of rows, `column` values of columns, and `rows` values of scratch for rows.
     pub(crate) fn fit(&mut self, (row, column, rows): (usize, usize, usize)) -> Result<()> {
         unwritten(&mut self.row, row, f64::NAN, COEFFICIENTS, &Threads::One)?;
         unwritten(&mut self.column, column, Complex::default(), COEFFICIENTS, &Threads::One)?;
@@ -56,7 +65,7 @@ impl Drop for Piece {
     }
 }
 
-/// The transforms of both directions, and their threads.
+/// The transforms of a symbol's computation in x and y without lanes, and their threads.
 pub(crate) struct Transforms<'a> {
     rows: RowTransform<f64>,
     columns: ColumnTransform<f64>,
@@ -64,22 +73,24 @@ pub(crate) struct Transforms<'a> {
 }
 
 impl<'a> Transforms<'a> {
-    /// The transforms of a period.
+    /// Makes the transforms of a period.
     pub fn new((px, py): (usize, usize), threads: &'a Threads) -> Result<Transforms<'a>> {
         Ok(Transforms { rows: RowTransform::new(px)?, columns: ColumnTransform::new(py)?, threads })
     }
 
+    /// The period in x and y.
     fn period(&self) -> (usize, usize) {
         (self.rows.length(), self.columns.length())
     }
 
+    /// The normalisation of the symbol, `1/(px py)`.
     fn scale(&self) -> f64 {
         let (px, py) = self.period();
         1.0 / (px as f64 * py as f64)
     }
 
-    /// Fits pieces to the transforms of both directions.
-    fn suit(&self, pieces: &mut Vec<Piece>) -> Result<()> {
+    /// Makes one piece for each thread, with the memory that these transforms need.
+    fn fit_pieces(&self, pieces: &mut Vec<Piece>) -> Result<()> {
         let (px, py) = self.period();
         pieces.resize_with(self.threads.count(), Piece::default);
         for piece in pieces {
@@ -90,7 +101,7 @@ impl<'a> Transforms<'a> {
         Ok(())
     }
 
-    /// The symbol of even coefficients: half of each column. Columns are padded to an even number by repeating the last.
+    /// Computes the symbol of even coefficients: the bins 0 ..= py/2 of each column. An odd number of columns is padded by repeating the last.
     pub fn of_even<T: Real, F, G>(
         &self,
         even: &Even<F, G>,
@@ -101,23 +112,24 @@ impl<'a> Transforms<'a> {
         F: Fn(i64, &mut [f64]) + Sync + Send,
         G: Fn(f64) -> f64 + Sync + Send,
     {
-        let ((px, py), nb, (row_given, rows_given)) = (self.period(), self.rows.bins(), even.given);
-        unwritten(in_x, rows_given * nb, f64::NAN, COEFFICIENTS, self.threads)?;
-        self.suit(pieces)?;
+        let ((px, py), nb, (given_x, given_y)) = (self.period(), self.rows.bins(), even.given);
+        unwritten(in_x, given_y * nb, f64::NAN, COEFFICIENTS, self.threads)?;
+        self.fit_pieces(pieces)?;
         self.threads.for_each_row(in_x, nb, pieces, |ky, out, piece| {
             let row = &mut piece.row[..px];
-            fill_period(ky as i64, row_given, row, Parity::Even, &even.fill);
+            fill_period(ky as i64, given_x, row, Parity::Even, &even.fill);
             self.rows.forward(row, &mut piece.column[..nb], &mut piece.rows);
+            // The transform of an even row is real.
             out.iter_mut().zip(&piece.column).for_each(|(value, bin)| *value = bin.re);
         });
         let scale = self.scale();
         let (half, value) = (py / 2 + 1, |value: f64| T::of(scale * (even.finish)(value)));
         unwritten(symbol, (nb + nb % 2) * half, T::nan(), SYMBOL, self.threads)?;
-        self.threads.for_each_row(symbol, 2 * PAIRS * half, pieces, |k, out, piece| {
-            let first = 2 * PAIRS * k;
+        self.threads.for_each_row(symbol, 2 * PAIRS * half, pieces, |b, out, piece| {
+            let first = 2 * PAIRS * b;
             let columns = (nb - first).min(2 * PAIRS);
             let block = &mut piece.column[..columns.div_ceil(2) * py];
-            fill_pairs((in_x, nb), rows_given, first, (block, py), |re, im| [Complex::new(re, im); 2]);
+            fill_pairs((in_x, nb), given_y, first, (block, py), |re, im| [Complex::new(re, im); 2]);
             self.columns.forward(block, &mut piece.columns);
             for (column, out) in block.chunks_exact(py).zip(out.chunks_exact_mut(2 * half)) {
                 let (re, im) = out.split_at_mut(half);
@@ -129,8 +141,9 @@ impl<'a> Transforms<'a> {
         Ok(())
     }
 
-    /// The transforms in x of some rows of coefficients; `fill(kx, i, values)` gives those of row i from offset kx on.
-    fn of_rows(
+    /// Transforms `count` rows of coefficients in x, to `in_x`. `fill(kx, i, values)` fills `values` with the coefficients of row i at the offsets
+    /// kx, kx + 1, ...
+    fn rows_in_x(
         &self,
         count: usize,
         in_x: &mut Vec<Complex<f64>>,
@@ -140,10 +153,10 @@ impl<'a> Transforms<'a> {
     ) -> Result<()> {
         let (px, nb, together) = (self.rows.length(), self.rows.bins(), self.rows.at_a_time());
         unwritten(in_x, count * nb, Complex::new(f64::NAN, 0.0), COEFFICIENTS, self.threads)?;
-        self.threads.for_each_row(in_x, together * nb, pieces, |k, out, piece| {
+        self.threads.for_each_row(in_x, together * nb, pieces, |group, out, piece| {
             let rows = &mut piece.row[..out.len() / nb * px];
             for (i, row) in rows.chunks_exact_mut(px).enumerate() {
-                let i = k * together + i;
+                let i = group * together + i;
                 fill(0, i, &mut row[..mx]);
                 row[mx..px - (mx - 1)].fill(0.0);
                 fill(1 - mx as i64, i, &mut row[px - (mx - 1)..]);
@@ -153,7 +166,8 @@ impl<'a> Transforms<'a> {
         Ok(())
     }
 
-    /// The symbol of the symmetric part of coefficients. The transform of row -ky is the conjugate of that of row ky.
+    /// Computes the symbol of the symmetric part `(c(k) + c(-k))/2` of coefficients, times a factor. Only rows ky >= 0 are transformed in x: the
+    /// transform of row -ky is the conjugate of that of row ky.
     pub fn of_symmetric<T: Real>(
         &self,
         (coefficients, factor): (&impl Coefficients, f64),
@@ -162,14 +176,14 @@ impl<'a> Transforms<'a> {
         symbol: &mut Vec<T>,
     ) -> Result<()> {
         let (py, nb) = (self.columns.length(), self.rows.bins());
-        self.suit(pieces)?;
-        self.of_rows(my, in_x, pieces, mx, |kx, ky, row| coefficients.fill_symmetric_row(kx, ky as i64, row))?;
+        self.fit_pieces(pieces)?;
+        self.rows_in_x(my, in_x, pieces, mx, |kx, ky, row| coefficients.fill_symmetric_row(kx, ky as i64, row))?;
         unwritten(symbol, (nb + nb % 2) * py, T::nan(), SYMBOL, self.threads)?;
         let scale = factor * self.scale();
-        self.threads.for_each_row(symbol, PAIRS * 2 * py, pieces, |block, out, piece| {
-            let first = PAIRS * 2 * block;
+        self.threads.for_each_row(symbol, PAIRS * 2 * py, pieces, |b, out, piece| {
+            let first = PAIRS * 2 * b;
             let block = &mut piece.column[..out.len() / 2];
-            // The values of a + i b in the rows ky and -ky.
+            // Two columns a and b make the complex column a + i b: in row ky from a and b, in row -ky from their conjugates.
             fill_pairs((in_x, nb), my, first, (block, py), |a: Complex<f64>, b: Complex<f64>| {
                 [Complex::new(a.re - b.im, a.im + b.re), Complex::new(a.re + b.im, b.re - a.im)]
             });
@@ -182,7 +196,7 @@ impl<'a> Transforms<'a> {
         Ok(())
     }
 
-    /// The symbol of any coefficients.
+    /// Computes the symbol of any coefficients, times a factor.
     pub fn of_general<T: Real>(
         &self,
         (coefficients, factor): (&impl Coefficients, f64),
@@ -191,17 +205,18 @@ impl<'a> Transforms<'a> {
         symbol: &mut Vec<Complex<T>>,
     ) -> Result<()> {
         let (py, nb) = (self.columns.length(), self.rows.bins());
-        self.suit(pieces)?;
-        // Rows 0..my, then 1-my..=-1, as in a period.
-        self.of_rows(2 * my - 1, in_x, pieces, mx, |kx, i, row| {
+        self.fit_pieces(pieces)?;
+        // First the rows at the offsets ky = 0 ..= my - 1, directly after them those at 1 - my ..= -1.
+        self.rows_in_x(2 * my - 1, in_x, pieces, mx, |kx, i, row| {
             let ky = if i < my { i as i64 } else { i as i64 - (2 * my as i64 - 1) };
             coefficients.fill_row(kx, ky, row);
         })?;
         unwritten(symbol, nb * py, Complex::new(T::nan(), T::nan()), SYMBOL, self.threads)?;
         let (scale, gap) = (factor * self.scale(), py - (2 * my - 1));
-        self.threads.for_each_row(symbol, PAIRS * py, pieces, |block, out, piece| {
-            let first = PAIRS * block;
+        self.threads.for_each_row(symbol, PAIRS * py, pieces, |b, out, piece| {
+            let first = PAIRS * b;
             let block = &mut piece.column[..out.len()];
+            // In a period there is a gap of zeros between the offsets ky >= 0 and those < 0.
             for (rows, to) in [(0..my, 0), (my..2 * my - 1, my + gap)] {
                 gather((in_x, nb), rows, first, (block, py), to);
             }

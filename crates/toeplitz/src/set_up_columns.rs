@@ -1,4 +1,4 @@
-//! Columns during the set-up of a symbol: gathered from a matrix of rows, and converted to the precision of products.
+//! Columns in the computation of a symbol: gathers them from a matrix of rows, and converts them to the precision of products.
 
 use std::ops::Range;
 
@@ -7,10 +7,10 @@ use crate::coefficients::Parity;
 use crate::passes::Real;
 use crate::real::Complex;
 
-/// Columns of complex numbers, or pairs of real ones, gathered at a time: the pairs of a block, whole cache lines.
+/// The number of columns that are gathered at a time: complex columns, or pairs of real ones. They are whole cache lines of each row.
 pub(crate) const PAIRS: usize = BLOCK / 2;
 
-/// A column times a factor, in another precision. Compiled for the vectors of this machine.
+/// Writes a column times a factor to `out`, in another precision. pulp compiles the loop for the vectors of this machine.
 pub(crate) struct Scaled<'a, T> {
     pub(crate) column: &'a [Complex<f64>],
     pub(crate) scale: f64,
@@ -29,7 +29,8 @@ impl<T: Real> pulp::NullaryFnOnce for Scaled<'_, T> {
     }
 }
 
-/// The real and imaginary parts of a column, times a factor, in another precision. Compiled for the vectors of this machine.
+/// Writes the real and the imaginary parts of a column, times a factor, to `re` and `im`, in another precision. pulp compiles the loop for the
+/// vectors of this machine.
 pub(crate) struct Parts<'a, T> {
     pub(crate) column: &'a [Complex<f64>],
     pub(crate) scale: f64,
@@ -49,8 +50,8 @@ impl<T: Real> pulp::NullaryFnOnce for Parts<'_, T> {
     }
 }
 
-/// Copies a part of a matrix, which is `nb` columns wide, to a block of columns, each `py` long. The part has the rows `rows` and as many columns as
-/// the block, from `first` on. Its first row becomes row `to` of the block.
+/// Copies a part of a matrix to a block of columns. The matrix is given with its width `nb`, the block with the length `py` of its columns. The part
+/// has the rows `rows`, and as many columns as the block, from column `first` on. Row `rows.start` of the matrix becomes row `to` of the block.
 pub(crate) fn gather<V: Copy>(
     matrix: (&[V], usize),
     rows: Range<usize>,
@@ -58,13 +59,14 @@ pub(crate) fn gather<V: Copy>(
     (block, py): (&mut [V], usize),
     to: usize,
 ) {
-    // With a constant number the compiler unrolls the loop.
+    // With a constant number of columns the compiler unrolls the loop over them.
     match block.len() / py {
         PAIRS => copy_columns(matrix, rows, (first, PAIRS), (block, py), to),
         count => copy_columns(matrix, rows, (first, count), (block, py), to),
     }
 }
 
+/// [`gather`] of `count` columns.
 #[inline(always)]
 fn copy_columns<V: Copy>(
     (matrix, nb): (&[V], usize),
@@ -81,7 +83,8 @@ fn copy_columns<V: Copy>(
     }
 }
 
-/// Fills a period in row ky with even or odd coefficients, given by `fill` at offsets 0 .. `given`.
+/// Fills a row of one period with even or odd coefficients at the offset ky. `fill` gives those at the offsets kx = 0 .. `given`; the mirrored ones
+/// at -kx follow from the parity, and all others are 0.
 pub(crate) fn fill_period(ky: i64, given: usize, row: &mut [f64], parity: Parity, fill: impl Fn(i64, &mut [f64])) {
     let px = row.len();
     row.fill(0.0);
@@ -94,9 +97,11 @@ pub(crate) fn fill_period(ky: i64, given: usize, row: &mut [f64], parity: Parity
     }
 }
 
-/// Fills each column of a block, `py` long, with a pair of columns of a matrix, from column `first` on. The matrix has `rows` rows ky >= 0 and is
-/// `nb` columns wide. If a pair has the values a and b in row ky, `values(a, b)` are those of the block in the rows ky and -ky. Other rows are 0.
-/// If the number of columns is odd, the last one is paired with itself.
+/// Fills each column of a block with a pair of neighbouring columns of a matrix, from column `first` on.
+///
+/// The matrix is given with its width `nb`; it has `rows` rows, ky = 0 .. `rows`. The block is given with the length `py` of its columns. If a pair
+/// has the values a and b in row ky, `values(a, b)` returns the values of the block in the rows ky and -ky. Other rows of the block are 0. If the
+/// number of columns is odd, the last one is paired with itself.
 pub(crate) fn fill_pairs<V: Copy>(
     matrix: (&[V], usize),
     rows: usize,
@@ -113,6 +118,7 @@ pub(crate) fn fill_pairs<V: Copy>(
     }
 }
 
+/// The part of [`fill_pairs`] that writes the rows ky and -ky, from `count` columns of the matrix.
 #[inline(always)]
 fn join_columns<V: Copy>(
     (matrix, nb): (&[V], usize),
@@ -122,11 +128,12 @@ fn join_columns<V: Copy>(
     values: impl Fn(V, V) -> [Complex<f64>; 2],
 ) {
     for ky in 0..rows {
-        let (row, opposite) = (&matrix[ky * nb + first..][..count], if ky == 0 { 0 } else { py - ky });
+        let (row, mirrored_ky) = (&matrix[ky * nb + first..][..count], if ky == 0 { 0 } else { py - ky });
         for pair in 0..count.div_ceil(2) {
-            let [here, there] = values(row[2 * pair], row[(2 * pair + 1).min(count - 1)]);
-            block[pair * py + opposite] = there;
-            block[pair * py + ky] = here;
+            let [value, mirrored_value] = values(row[2 * pair], row[(2 * pair + 1).min(count - 1)]);
+            // At ky = 0 both rows are the same one, which keeps `value`.
+            block[pair * py + mirrored_ky] = mirrored_value;
+            block[pair * py + ky] = value;
         }
     }
 }

@@ -1,15 +1,16 @@
-//! The transform of the coefficients. A product multiplies by it.
+//! The symbol S: the Fourier transform of the coefficients c. A product multiplies the transformed pressures by S.
 //!
-//! ```text
-//! S = F c / (px py),   one column of it per x bin,    k an offset (kx, ky)
+//! S is stored with the normalisation of F^-1, as `S = F c / (px py)`. It has one column for each bin in x. With an offset k = (kx, ky):
 //!
-//! c(kx, ky) = c(-kx, ky) = c(kx, -ky)    S real and even: half of each column is stored; columns in vectors have another order
-//! c(k) = c(-k)                           S real
-//! any other c                            S complex
-//! ```
+//! | coefficients | symbol | stored |
+//! |---|---|---|
+//! | `c(kx, ky) = c(-kx, ky) = c(kx, -ky)` | real and even | half of each column; with SIMD lanes in the order of [`LaneColumns`] |
+//! | `c(k) = c(-k)` | real | whole columns |
+//! | any other | complex | whole columns |
 //!
-//! A table counts as symmetric if `c(k)` and `c(-k)` differ by at most [`SYMMETRY`] of the largest coefficient. The rounding error of single
-//! precision is as large as that. There the symmetric part `(c(k) + c(-k))/2` replaces the table. Its symbol is the real part of S.
+//! A table of coefficients counts as symmetric if `c(k)` and `c(-k)` differ by at most [`SYMMETRY`] times the largest coefficient. The rounding error
+//! of single precision is as large as that. So in single precision the symmetric part `(c(k) + c(-k))/2` replaces the table. The symbol of the
+//! symmetric part is the real part of S.
 
 use std::mem::take;
 
@@ -25,16 +26,18 @@ use par::Result;
 /// The name of this memory in messages.
 pub(crate) const SYMBOL: &str = "the operator's spectrum";
 
-/// Values that are converted at a time.
+/// The number of values that one piece of a conversion to another precision has.
 const PIECE: usize = 1 << 12;
 
-/// The symbol, including the normalisation. A real symbol has an even number of columns, so the last column may be stored twice.
+/// The symbol, including the normalisation. Without lanes, columns of a real symbol are computed in pairs. If their number is odd, the last one is
+/// stored twice.
 pub(crate) enum Symbol<T: Real> {
-    /// Blocks of columns in the order of [`LaneColumns`]. Without lanes, `py/2 + 1` values a column.
+    /// S is real and even. With lanes: blocks of columns in the order of [`LaneColumns`]. Without: `py/2 + 1` values of each column.
     Even(Vec<T>),
-    /// `py` values a column.
+    /// S is real: `py` values of each column.
     Symmetric(Vec<T>),
-    /// `py` complex values a column, and whether their imaginary parts are only the round-off of a symmetric table.
+    /// S is complex: `py` values of each column. The second item tells whether the imaginary parts are only the asymmetry that a symmetric table may
+    /// have.
     General(Vec<Complex<T>>, bool),
 }
 
@@ -47,31 +50,35 @@ impl<T: Real> Drop for Symbol<T> {
     }
 }
 
-/// Whether the admissible asymmetry of a table is below the rounding of T.
+/// Whether the precision T is so coarse that its rounding exceeds the asymmetry [`SYMMETRY`] of a symmetric table.
 pub(crate) fn is_coarse<T: Real>() -> bool {
     T::epsilon().to_double() >= SYMMETRY
 }
 
-/// The order of an even symbol of `columns` columns, of period py.
+/// The order in which an even symbol is stored.
 #[derive(Clone, Copy)]
 pub(crate) struct EvenOrder<'a, T: Real> {
+    /// The transforms of columns in lanes, if the product uses lanes.
     pub by_lanes: Option<&'a LaneColumns<T>>,
+    /// The number of columns, px/2 + 1.
     pub columns: usize,
+    /// The period in y.
     pub py: usize,
 }
 
 impl<T: Real> EvenOrder<'_, T> {
-    /// Values of a column without lanes.
+    /// The number of stored values of a column, if there are no lanes: the bins 0 ..= py/2.
     pub fn half(&self) -> usize {
         self.py / 2 + 1
     }
 
-    /// Values of a block of columns.
+    /// The number of stored values of a block of columns.
     pub fn block(&self) -> usize {
         BLOCK * self.by_lanes.map_or(self.half(), LaneColumns::kept_rows)
     }
 
-    /// The number of values: of whole blocks, or of an even number of columns. The last column may be stored twice.
+    /// The number of values of the symbol. With lanes it is that of whole blocks. Without, it is that of an even number of columns, so the last
+    /// column may be stored twice.
     pub fn len(&self) -> usize {
         match self.by_lanes {
             Some(_) => self.columns.div_ceil(BLOCK) * self.block(),
@@ -81,7 +88,7 @@ impl<T: Real> EvenOrder<'_, T> {
 }
 
 impl<T: Real> Symbol<T> {
-    /// The symbol in another precision, times a factor.
+    /// Converts the symbol to another precision, and multiplies it by a factor.
     pub fn in_precision<S: Real>(&self, factor: f64, threads: &Threads) -> Result<Symbol<S>> {
         let convert = |value: T| S::of(factor * value.to_double());
         let real = |from: &[T]| converted(from, |from| convert(*from), S::nan(), threads);
@@ -98,7 +105,7 @@ impl<T: Real> Symbol<T> {
         })
     }
 
-    /// Bytes held.
+    /// The bytes of the symbol's values.
     pub fn bytes(&self) -> usize {
         match self {
             Symbol::Even(s) | Symbol::Symmetric(s) => size_of_val(&s[..]),
@@ -106,7 +113,7 @@ impl<T: Real> Symbol<T> {
         }
     }
 
-    /// Takes the memory for another real symbol.
+    /// Takes the memory of this symbol, if it is real, for another real symbol.
     pub fn take_real(&mut self) -> Vec<T> {
         match self {
             Symbol::Even(values) | Symbol::Symmetric(values) => take(values),
@@ -114,7 +121,7 @@ impl<T: Real> Symbol<T> {
         }
     }
 
-    /// Takes the memory for another complex symbol.
+    /// Takes the memory of this symbol, if it is complex, for another complex symbol.
     pub fn take_complex(&mut self) -> Vec<Complex<T>> {
         match self {
             Symbol::Even(_) | Symbol::Symmetric(_) => Vec::new(),
@@ -122,7 +129,8 @@ impl<T: Real> Symbol<T> {
         }
     }
 
-    /// Multiplies transformed columns of length py without lanes. The first has x bin `first`.
+    /// Multiplies transformed columns, each of length py, by the symbol. The first column belongs to bin `first` in x. An even symbol is stored
+    /// without lanes.
     pub fn multiply(&self, first: usize, order: EvenOrder<'_, T>, columns: &mut [Complex<T>]) {
         let py = order.py;
         for (column, bin) in columns.chunks_exact_mut(py).zip(first..) {
@@ -146,10 +154,12 @@ impl<T: Real> Symbol<T> {
     }
 }
 
-/// A column times its symbol: the bins with a stored value, and the mirrored bins. Compiled for the vector instructions of this machine. No bit of
-/// the result depends on them.
+/// Multiplies a column by a real symbol. pulp compiles the work for the vector instructions of this machine. No bit of the result depends on these
+/// instructions.
 struct Multiply<'a, T: Real> {
+    /// The bins whose value of the symbol is stored.
     lower: &'a mut [Complex<T>],
+    /// The mirrored bins: the last one has the same value as bin 1. Empty if the symbol is not even.
     upper: &'a mut [Complex<T>],
     s: &'a [T],
 }
@@ -176,7 +186,7 @@ impl<T: Real> pulp::NullaryFnOnce for Multiply<'_, T> {
     }
 }
 
-/// A symbol converted from another one.
+/// Converts all values of a symbol. `mark` fills new memory before the values are written.
 pub(crate) fn converted<A: Sync, B: Copy + Send + Sync + 'static>(
     from: &[A],
     convert: impl Fn(&A) -> B + Sync + Send,

@@ -1,11 +1,12 @@
-//! Products of two components, `u = A q`, by a symmetric 2 x 2 matrix of coefficients for each offset.
+//! Products `u = A q` of fields with two components (x and y), by a symmetric 2 x 2 matrix of coefficients for each offset.
 //!
 //! ```text
 //! (ux, uy)_I = sum_J [xx xy; xy yy](I - J) (qx, qy)_J
 //! ```
 //!
-//! Rows and columns of both components are transformed by this crate's own stages, in lanes, on every machine. Without xy a component displaces in
-//! its own direction only. Then a component of zeros costs nothing, and its displacements are exactly 0.
+//! The rows and columns of both components are transformed by the stages of this crate, in SIMD lanes, on every machine. If xy is 0, the components
+//! are uncoupled: qx causes displacements in x only, and qy in y only. Then a component of q that is 0 costs no transforms, and its displacements are
+//! exactly 0.
 
 use std::ops::Range;
 
@@ -26,27 +27,30 @@ use crate::workspace::{Memory, Piece, Room};
 use par::threads::Threads;
 use par::Result;
 
-/// The shortest periods with stages: px/2 and py exceed the largest radix, 5.
+/// The shortest periods in x and y that have stages: px/2 and py must exceed the largest radix, 5.
 const SHORTEST: (usize, usize) = (12, 6);
 
-/// Products of two components on a grid of `mx * my` elements.
+/// Products by one matrix A of fields with two components, on a grid of `mx * my` elements.
 pub struct VectorProduct<T: Real> {
     mx: usize,
     my: usize,
+    /// The transforms in x.
     rows: LaneRows<T>,
+    /// The transforms in y.
     columns: LaneColumns<T>,
     symbol: VectorSymbol<T>,
+    /// The period in x.
     px: usize,
     threads: Threads,
 }
 
-/// The period with the fastest products, of at least these lengths.
+/// The period in x and y, of at least these lengths, with the fastest products.
 pub fn vector_period((least_x, least_y): (usize, usize)) -> (usize, usize) {
     (length_for_stages(least_x.max(SHORTEST.0)), length_for_stages(least_y.max(SHORTEST.1)))
 }
 
 impl<T: Real> VectorProduct<T> {
-    /// The product of coefficients that are even or odd, with a [period](vector_period).
+    /// The product by an [`EvenMatrix`]: xx and yy are even, xy is odd. `period` is a [`vector_period`].
     pub fn even<F, G>(
         grid: (usize, usize),
         period: (usize, usize),
@@ -61,33 +65,37 @@ impl<T: Real> VectorProduct<T> {
         VectorProduct::of(grid, period, symbol, threads)
     }
 
-    /// The product of a symbol. `of(kx, ky)` returns its [xx, yy, xy] at the bins >= 0 of a [period](vector_period). xx and yy are even, xy is odd.
+    /// The product by a matrix whose symbol is known: xx and yy are even, xy is odd. `values(bin_x, bin_y)` returns [xx, yy, xy] at the bins `0 ..=
+    /// px/2`, `0 ..= py/2`, without the normalisation `1/(px py)`. `period` is a [`vector_period`]. Without coupling the values of xy are ignored.
     pub fn of_waves(
         grid: (usize, usize),
         period: (usize, usize),
-        (is_coupled, of): (bool, impl Fn(usize, usize) -> [f64; 3] + Sync + Send),
+        (is_coupled, values): (bool, impl Fn(usize, usize) -> [f64; 3] + Sync + Send),
         threads: &Threads,
     ) -> Result<VectorProduct<T>> {
-        VectorProduct::of(grid, period, transforms(period, threads)?.of_waves(is_coupled, of)?, threads)
+        VectorProduct::of(grid, period, transforms(period, threads)?.of_waves(is_coupled, values)?, threads)
     }
 
-    /// The product for displacements `n` elements further on in x. Its period must hold `|n|` more offsets in x than that of the plain product.
+    /// The product that returns, for each element, the displacement `n` elements further on in x. The period in x must have room for `|n|` more
+    /// offsets than that of the plain product.
     pub fn further_on(self, n: i64) -> Result<VectorProduct<T>> {
-        self.at(Place::FurtherOn(n))
+        self.displaced(Place::FurtherOn(n))
     }
 
-    /// The product for the displacements minus those `n` elements further on in x. Its period is that of [`further_on`](Self::further_on).
+    /// The product that returns, for each element, its displacement minus that `n` elements further on in x. The period is as in
+    /// [`further_on`](Self::further_on).
     pub fn less_further_on(self, n: i64) -> Result<VectorProduct<T>> {
-        self.at(Place::LessFurtherOn(n))
+        self.displaced(Place::LessFurtherOn(n))
     }
 
-    fn at(mut self, place: Place) -> Result<VectorProduct<T>> {
+    /// Multiplies the symbol by the factors of a [`Place`].
+    fn displaced(mut self, place: Place) -> Result<VectorProduct<T>> {
         self.symbol.factors = factors(place, self.px, self.rows.blocks(), &self.threads)?;
         Ok(self)
     }
 
-    /// The product of general coefficients. `fill(kx, ky, [xx, yy, xy])` sets those of the offsets `(kx, ky)`, `(kx + 1, ky)`, ... xy is used if the
-    /// components are coupled.
+    /// The product by general coefficients. `fill(kx, ky, [xx, yy, xy])` fills three slices with the coefficients at the offsets `(kx, ky)`,
+    /// `(kx + 1, ky)`, ... Without coupling the values of xy are ignored.
     pub fn uneven(
         grid: (usize, usize),
         is_coupled: bool,
@@ -100,6 +108,7 @@ impl<T: Real> VectorProduct<T> {
         VectorProduct::of(grid, period, symbol, threads)
     }
 
+    /// The product by a symbol of this period.
     fn of(
         (mx, my): (usize, usize),
         (px, py): (usize, usize),
@@ -118,17 +127,17 @@ impl<T: Real> VectorProduct<T> {
         VectorProduct::of((self.mx, self.my), period, self.symbol.in_precision(&self.threads)?, &self.threads)
     }
 
-    /// Elements in x and y.
+    /// The numbers of elements in x and y.
     pub fn grid(&self) -> (usize, usize) {
         (self.mx, self.my)
     }
 
-    /// Bytes of the symbol.
+    /// The bytes of the symbol.
     pub fn bytes(&self) -> usize {
         self.symbol.bytes()
     }
 
-    /// Whether a component displaces in its own direction only.
+    /// Whether xy is 0: each component of q causes displacements in its own direction only.
     pub fn is_uncoupled(&self) -> bool {
         self.symbol.is_uncoupled()
     }
@@ -138,7 +147,7 @@ impl<T: Real> VectorProduct<T> {
         self.rows.at_a_time()
     }
 
-    /// Memory for its products.
+    /// Allocates the memory of products.
     pub fn memory(&self) -> Result<Memory<T>> {
         let room = Room {
             bins: 2 * self.rows.bins_of(self.my) + before_a_line::<T>(),
@@ -150,8 +159,12 @@ impl<T: Real> VectorProduct<T> {
         Memory::new(room, &self.threads)
     }
 
-    /// `u = A q`. q is zero outside the rows `loaded` of each component. `load(component, first row, rows)` fills `rows` with rows of q.
-    /// `write(piece, first row, [ux, uy])` stores rows of u in one of the `pieces`, one for each [`rows_at_a_time`](Self::rows_at_a_time) rows.
+    /// Computes `u = A q`.
+    ///
+    /// - `loaded`: for each component, the rows outside of which q is zero.
+    /// - `load(component, first row, rows)` fills `rows` with consecutive rows of q, from `first row` on.
+    /// - `write(piece, first row, [ux, uy])` stores consecutive rows of u in a piece of the caller. There is one piece for each
+    ///   [`rows_at_a_time`](Self::rows_at_a_time) rows.
     pub fn apply<P: Send>(
         &self,
         loaded: [Range<usize>; 2],
@@ -162,13 +175,14 @@ impl<T: Real> VectorProduct<T> {
         ),
         memory: &mut Memory<T>,
     ) {
-        let of_component = self.rows.bins_of(self.my);
-        memory.wake(2 * of_component + before_a_line::<T>(), &self.threads);
+        let bins_per_component = self.rows.bins_of(self.my);
+        memory.wake(2 * bins_per_component + before_a_line::<T>(), &self.threads);
         let Memory { bins, pieces: scratch, .. } = memory;
-        let (x, y) = from_a_line(bins)[..2 * of_component].split_at_mut(of_component);
+        let (x, y) = from_a_line(bins)[..2 * bins_per_component].split_at_mut(bins_per_component);
         let mut bins = [x, y];
-        let alone = self.is_uncoupled();
-        let is_zero = [0, 1].map(|component| alone && loaded[component].is_empty());
+        let uncoupled = self.is_uncoupled();
+        // Without coupling, a component of q that is zero has no displacements.
+        let is_zero = [0, 1].map(|component| uncoupled && loaded[component].is_empty());
         for component in (0..2).filter(|component| !is_zero[*component]) {
             let (rows, first) = (loaded[component].clone(), loaded[component].start);
             let groups = self.rows.groups(self.my, bins[component], rows.clone()).enumerate();
@@ -181,14 +195,14 @@ impl<T: Real> VectorProduct<T> {
                 T::rows_forward(self.rows.arch, Forward { plan, rows: values, width: self.mx, bins, scratch });
             });
         }
-        match alone {
+        match uncoupled {
             false => self.multiply(&mut bins, &loaded, scratch),
             true => (0..2)
                 .filter(|component| !is_zero[*component])
                 .for_each(|component| self.multiply_one(component, bins[component], &loaded[component], scratch)),
         }
         let [x, y] = bins.map(|bins| self.rows.groups(self.my, bins, 0..self.my));
-        self.threads.share(x.zip(y).zip(pieces).enumerate(), scratch, |(i, ((x, y), to)), piece| {
+        self.threads.share(x.zip(y).zip(pieces).enumerate(), scratch, |(i, ((x, y), caller_piece)), piece| {
             let first = i * self.rows.at_a_time();
             let count = self.rows.at_a_time().min(self.my - first);
             let (ux, uy) = piece.row[..2 * count * self.mx].split_at_mut(count * self.mx);
@@ -200,7 +214,7 @@ impl<T: Real> VectorProduct<T> {
                 let (plan, scratch) = (&*self.rows.plan, &mut piece.scratch[..]);
                 T::rows_inverse(self.rows.arch, Inverse { plan, bins: &bins, rows, width: self.mx, scratch });
             }
-            write(to, first, [ux, uy]);
+            write(caller_piece, first, [ux, uy]);
         });
     }
 
@@ -213,7 +227,7 @@ impl<T: Real> VectorProduct<T> {
         });
     }
 
-    /// Transforms one component in y, multiplies it by its symbol and transforms it back.
+    /// Transforms one component in y, multiplies it by xx or yy and transforms it back.
     fn multiply_one(&self, component: usize, bins: &mut [Complex<T>], loaded: &Range<usize>, scratch: &mut [Piece<T>]) {
         let blocks = bins.chunks_exact_mut(self.rows.height(self.my) * BLOCK).map(|block| [block]);
         self.each_block(blocks, [loaded.clone()], scratch, |b, blocks, memory| {
@@ -221,7 +235,7 @@ impl<T: Real> VectorProduct<T> {
         });
     }
 
-    /// Calls `work(number, blocks, memory)` for each block of columns, of K components.
+    /// Calls `work(b, blocks, memory)` for each block number b of columns, where `blocks` has this block of all K components.
     fn each_block<'a, const K: usize>(
         &self,
         blocks: impl DoubleEndedIterator<Item = [&'a mut [Complex<T>]; K]> + ExactSizeIterator + Send,
@@ -244,6 +258,7 @@ impl<T: Real> VectorProduct<T> {
     }
 }
 
+/// The transforms for the computation of a symbol. `period` has stages.
 fn transforms(period: (usize, usize), threads: &Threads) -> Result<LaneTransforms<'_>> {
     let transforms = LaneTransforms::of_any(pulp::Arch::new(), period, threads)?;
     Ok(transforms.unwrap_or_else(|| unreachable!("no stages have the periods {period:?}")))

@@ -1,10 +1,10 @@
-//! The symbol of products of two components: a symmetric matrix `[xx, xy; xy, yy]` of each wave.
+//! The symbol of products of two components: a symmetric matrix `[xx, xy; xy, yy]` for each bin (kx, ky) of the Fourier transform.
 //!
-//! ```text
-//! xx, yy even in both directions, xy odd in both      all real; for the wave -ky: xx, yy, -xy. Half of each column is kept
-//! the same, n elements further on in x                times exp(2 pi i n kx/px), one complex number for each column ([`Place`])
-//! any other coefficients                              complex: whole columns are kept, in the order of the stages
-//! ```
+//! | coefficients | symbol | stored |
+//! |---|---|---|
+//! | xx and yy even in both directions, xy odd in both | real; at the bin -ky: xx, yy, -xy | half of each column |
+//! | the same, n elements further on in x ([`Place`]) | times `exp(2 pi i n kx/px)` | in addition one complex factor for each column |
+//! | any other | complex | whole columns, in the order of the stages |
 
 use std::f64::consts::PI;
 
@@ -19,15 +19,18 @@ use par::memory::{keep, unwritten};
 use par::threads::Threads;
 use par::Result;
 
-/// The symbol, with the normalisation.
+/// The symbol of products of two components, including the normalisation 1/(px py).
 pub(crate) struct VectorSymbol<T: Real> {
-    /// `[block of columns][plane]`, planes xx, yy and, if coupled, xy: even and odd ones `[kept row][column]`, others `[row][part][column]`.
+    /// `[block of columns][plane]`, where the planes are xx, yy and, if the components are coupled, xy. If `is_even`, a plane is
+    /// `[kept row][column]`, otherwise `[row][part][column]`.
     pub values: Vec<T>,
+    /// The number of planes: 3 if the components are coupled, otherwise 2.
     pub planes: usize,
-    /// Values of a plane of a block.
-    pub of_plane: usize,
+    /// The number of values of one plane in one block.
+    pub values_per_plane: usize,
+    /// Whether xx and yy are even and xy is odd: the symbol is real.
     pub is_even: bool,
-    /// `[block of columns][part][column]`: factors on even and odd planes; empty: none.
+    /// `[block of columns][part][column]`: complex factors on an even symbol (see [`Place`]). If empty, all factors are 1.
     pub factors: Vec<T>,
 }
 
@@ -37,29 +40,29 @@ impl<T: Real> Drop for VectorSymbol<T> {
     }
 }
 
-/// The displacements that a product returns.
+/// Where in x a product returns displacements, and the factor on its symbol.
 #[derive(Clone, Copy)]
 pub(crate) enum Place {
-    /// Displacements n elements further on in x: `exp(2 pi i n kx/px)`.
+    /// For each element the displacement n elements further on in x. The factor is `exp(2 pi i n kx/px)`.
     FurtherOn(i64),
-    /// Displacements of each element less those n elements further on: `1 - exp(2 pi i n kx/px)`.
+    /// For each element its displacement minus that n elements further on in x. The factor is `1 - exp(2 pi i n kx/px)`.
     LessFurtherOn(i64),
 }
 
-/// The factors of the symbol in the bins of each block.
+/// Computes the factors of a [`Place`] at all bins kx, `[block of columns][part][column]`.
 pub(crate) fn factors<T: Real>(place: Place, px: usize, blocks: usize, threads: &Threads) -> Result<Vec<T>> {
     let mut factors = Vec::new();
     unwritten(&mut factors, 2 * BLOCK * blocks, T::nan(), SYMBOL, threads)?;
     let (Place::FurtherOn(n) | Place::LessFurtherOn(n)) = place;
-    for (k, factor) in factors.chunks_exact_mut(2 * BLOCK).enumerate() {
+    for (block, factor) in factors.chunks_exact_mut(2 * BLOCK).enumerate() {
         let (re, im) = factor.split_at_mut(BLOCK);
-        for ((bin, re), im) in (k * BLOCK..).zip(re).zip(im) {
-            let half = PI * ((bin as i64 * n).rem_euclid(px as i64)) as f64 / px as f64;
-            let (sine, cosine) = (2.0 * half).sin_cos();
+        for ((bin, re), im) in (block * BLOCK..).zip(re).zip(im) {
+            let half_angle = PI * ((bin as i64 * n).rem_euclid(px as i64)) as f64 / px as f64;
+            let (sine, cosine) = (2.0 * half_angle).sin_cos();
             (*re, *im) = match place {
                 Place::FurtherOn(_) => (T::of(cosine), T::of(sine)),
-                // 1 - cos(2 x) = 2 sin^2 x.
-                Place::LessFurtherOn(_) => (T::of(2.0 * half.sin() * half.sin()), T::of(-sine)),
+                // `1 - cos(2 x) = 2 sin^2 x` has no cancellation for small x.
+                Place::LessFurtherOn(_) => (T::of(2.0 * half_angle.sin() * half_angle.sin()), T::of(-sine)),
             };
         }
     }
@@ -67,29 +70,30 @@ pub(crate) fn factors<T: Real>(place: Place, px: usize, blocks: usize, threads: 
 }
 
 impl<T: Real> VectorSymbol<T> {
-    /// The symbol in another precision.
+    /// Converts the symbol to another precision.
     pub fn in_precision<S: Real>(&self, threads: &Threads) -> Result<VectorSymbol<S>> {
         let convert = |from: &[T]| converted(from, |value| S::of(value.to_double()), S::nan(), threads);
-        let VectorSymbol { planes, of_plane, is_even, .. } = *self;
+        let VectorSymbol { planes, values_per_plane, is_even, .. } = *self;
         let (values, factors) = (convert(&self.values)?, convert(&self.factors)?);
-        Ok(VectorSymbol { values, planes, of_plane, is_even, factors })
+        Ok(VectorSymbol { values, planes, values_per_plane, is_even, factors })
     }
 
-    /// Bytes held.
+    /// The bytes of the symbol's values and factors.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.values[..]) + size_of_val(&self.factors[..])
     }
 
-    /// Whether a component displaces in its own direction only.
+    /// Whether xy is 0: each component of q causes displacements in its own direction only.
     pub fn is_uncoupled(&self) -> bool {
         self.planes < 3
     }
 
+    /// The values of xx (plane 0), yy (1) or xy (2) in a block of columns.
     fn plane(&self, block: usize, plane: usize) -> &[T] {
-        &self.values[(block * self.planes + plane) * self.of_plane..][..self.of_plane]
+        &self.values[(block * self.planes + plane) * self.values_per_plane..][..self.values_per_plane]
     }
 
-    /// Multiplies a block of columns of both coupled components.
+    /// Transforms a block of columns of two coupled components in y, multiplies it by the symbol and transforms it back.
     pub fn multiply(
         &self,
         LaneColumns { plan, arch }: &LaneColumns<T>,
@@ -101,7 +105,7 @@ impl<T: Real> VectorSymbol<T> {
         match (self.is_even, self.factors_of(block)) {
             (true, None) => T::by_matrix(*arch, Multiply { plan, blocks, factor: &RealMatrix(planes), memory }),
             (true, Some(factors)) => {
-                let factor = &Displaced { of: RealMatrix(planes), factors };
+                let factor = &Displaced { symbol: RealMatrix(planes), factors };
                 T::by_matrix_displaced(*arch, Multiply { plan, blocks, factor, memory });
             }
             (false, _) => {
@@ -110,7 +114,7 @@ impl<T: Real> VectorSymbol<T> {
         }
     }
 
-    /// Multiplies a block of columns of one component.
+    /// Transforms a block of columns of one component in y, multiplies it by xx or yy and transforms it back.
     pub fn multiply_one(
         &self,
         LaneColumns { plan, arch }: &LaneColumns<T>,
@@ -122,14 +126,14 @@ impl<T: Real> VectorSymbol<T> {
         match (self.is_even, self.factors_of(block)) {
             (true, None) => T::by_even(*arch, Multiply { plan, blocks, factor: &EvenSymbol(plane), memory }),
             (true, Some(factors)) => {
-                let factor = &Displaced { of: EvenSymbol(plane), factors };
+                let factor = &Displaced { symbol: EvenSymbol(plane), factors };
                 T::by_even_displaced(*arch, Multiply { plan, blocks, factor, memory });
             }
             (false, _) => T::by_complex(*arch, Multiply { plan, blocks, factor: &ComplexSymbol(plane), memory }),
         }
     }
 
-    /// The factors of the columns of a block, if they are displaced.
+    /// The factors on the columns of a block; None if all factors are 1.
     fn factors_of(&self, block: usize) -> Option<&[T]> {
         self.factors.chunks_exact(2 * BLOCK).nth(block)
     }

@@ -10,23 +10,23 @@ use crate::real::Complex;
 /// The name of this memory in messages.
 const WORKSPACE: &str = "the product's workspace";
 
-/// The sizes of a product's memory. The memory also serves products with smaller sizes.
+/// The sizes of a product's memory. Memory of these sizes also serves products that need less.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Room {
-    /// Bins of all rows.
+    /// The number of bins of all rows.
     pub bins: usize,
-    /// Real values of rows, for each thread.
+    /// The number of real values of rows that each thread has room for.
     pub row: usize,
-    /// Complex values of a block of columns, for each thread.
+    /// The number of complex values of a block of columns that each thread has room for.
     pub columns: usize,
-    /// Complex values of scratch, for each thread.
+    /// The number of complex values of scratch that each thread has.
     pub scratch: usize,
-    /// The number of threads; each has a `Piece`.
+    /// The number of threads, each of which has its own buffers.
     pub pieces: usize,
 }
 
 impl Room {
-    /// The larger of both sizes.
+    /// The larger one of both rooms, for each size.
     #[must_use]
     pub fn max(self, other: Room) -> Room {
         Room {
@@ -39,13 +39,13 @@ impl Room {
     }
 }
 
-/// The memory of a product. The product itself allocates nothing.
+/// The memory of a product. A product that has its memory allocates nothing.
 pub struct Memory<T: Real> {
-    /// `[my][px/2 + 1]`: the rows, transformed in x. In lanes: blocks of columns, `[block][row][real or imaginary part][column]`.
+    /// The rows, transformed in x: `[my][px/2 + 1]`. With SIMD lanes: blocks of columns, `[block][row][real or imaginary part][column]`.
     pub bins: Vec<Complex<T>>,
-    /// One for each thread.
+    /// The buffers of the threads.
     pub pieces: Vec<Piece<T>>,
-    /// The bins of the largest product. `bins` is empty while it rests.
+    /// The length of `bins` for the largest product. While the memory [rests](Memory::rest), `bins` is empty.
     most: usize,
 }
 
@@ -53,16 +53,16 @@ pub struct Memory<T: Real> {
 pub struct Piece<T: Real> {
     /// The number of the last block of columns that this thread multiplied.
     pub(crate) block: usize,
-    /// Values of rows.
+    /// Room for the values of the rows that are transformed together.
     pub row: Vec<T>,
-    /// A block of columns.
+    /// Room for a block of columns.
     pub columns: Vec<Complex<T>>,
-    /// Scratch of transforms.
+    /// The scratch of transforms.
     pub scratch: Vec<Complex<T>>,
 }
 
 impl<T: Real> Memory<T> {
-    /// Memory for products of at most these sizes.
+    /// Allocates memory for products of at most these sizes. If `bins` is large, it rests until the first product.
     pub fn new(room: Room, threads: &Threads) -> Result<Memory<T>> {
         let piece = |_| {
             let (columns, scratch) = (blank(room.columns, nan(), WORKSPACE)?, blank(room.scratch, nan(), WORKSPACE)?);
@@ -73,35 +73,36 @@ impl<T: Real> Memory<T> {
         Ok(Memory { bins, pieces: (0..room.pieces).map(piece).collect::<Result<_>>()?, most: room.bins })
     }
 
-    /// Wakes at least this number of bins.
+    /// Makes `bins` at least `least` values long again, if it rested. The values are unspecified.
     pub(crate) fn wake(&mut self, least: usize, threads: &Threads) {
         let n = self.bins.len().max(least);
         wake(&mut self.bins, n, nan(), threads);
     }
 
-    /// Releases the memory of bins until the next product.
+    /// Returns the pages of large bins to the system until the next product. Their addresses stay reserved.
     pub fn rest(&mut self) {
         rest(&mut self.bins);
     }
 
-    /// Bytes held in bins.
+    /// The bytes of bins while they do not rest.
     pub fn bytes(&self) -> usize {
         self.most * size_of::<Complex<T>>()
     }
 
-    /// Bytes of the threads' buffers.
+    /// The bytes of the threads' buffers.
     pub fn bytes_of_pieces(&self) -> usize {
-        let of = |Piece { row, columns, scratch, .. }: &Piece<T>| {
+        let bytes = |Piece { row, columns, scratch, .. }: &Piece<T>| {
             size_of_val(&row[..]) + size_of_val(&columns[..]) + size_of_val(&scratch[..])
         };
-        self.pieces.iter().map(of).sum()
+        self.pieces.iter().map(bytes).sum()
     }
 }
 
 impl<T: Real> Piece<T> {
-    /// Guesses the address of the next block after block b, whose address is `b_at`. Blocks have `length` values. A thread that has advanced by some
-    /// blocks advances by as many again. If it did not move, or if that is beyond the ends, the guess is the neighbour of b away from the nearer end.
-    /// Used to prefetch only.
+    /// Guesses which block this thread multiplies after block b, and returns its address. Only prefetches use the guess.
+    ///
+    /// There are `count` blocks of `length` values, and block b is at the address `b_at`. A thread that moved from block a to block b probably goes
+    /// on to block `2 b - a`. If b is a, or if there is no such block, the guess is the neighbour of b away from the nearer end.
     pub(crate) fn next_block(
         &self,
         b_at: *const Complex<T>,
@@ -109,9 +110,9 @@ impl<T: Real> Piece<T> {
         length: usize,
         count: usize,
     ) -> *const Complex<T> {
-        let on = (2 * b).wrapping_sub(self.block);
-        let next = if on != b && on < count {
-            on
+        let as_far_again = (2 * b).wrapping_sub(self.block);
+        let next = if as_far_again != b && as_far_again < count {
+            as_far_again
         } else if 2 * b < count {
             b + 1
         } else {

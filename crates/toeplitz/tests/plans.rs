@@ -1,4 +1,4 @@
-//! A plan without enough memory is an error. The FFT crate would end the process, so it is called only when there is room.
+//! A plan without enough memory is an error. rustfft itself would end the process, so it is called only if there is enough.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -8,15 +8,17 @@ use toeplitz::fft::row_transform::RowTransform;
 use toeplitz::fft::{ColumnTransform, Real};
 use toeplitz::plan;
 
-/// The system's allocator, with at most `ROOM` bytes for each thread.
+/// The system's allocator, which refuses an allocation if the thread would hold more than `ROOM` bytes.
 struct Limited;
 
 thread_local! {
+    /// The largest number of bytes that this thread may hold.
     static ROOM: Cell<usize> = const { Cell::new(usize::MAX) };
+    /// The number of bytes that this thread holds.
     static HELD: Cell<usize> = const { Cell::new(0) };
 }
 
-/// Smaller allocations, messages and short lists, never fail.
+/// Allocations of at most this many bytes never fail. They are messages and short lists.
 const SMALL: usize = 512;
 
 // SAFETY: the system's allocator, or null.
@@ -41,38 +43,38 @@ unsafe impl GlobalAlloc for Limited {
 #[global_allocator]
 static LIMITED: Limited = Limited;
 
-/// Makes plans with more and more room until there is enough. Returns the number of failures.
-fn lacks<R>(n: usize, make: impl Fn() -> par::Result<R>) -> usize {
-    for lacks in 0.. {
+/// Makes plans of length n with more and more memory, until there is enough. Returns the number of failures.
+fn failures<R>(n: usize, make: impl Fn() -> par::Result<R>) -> usize {
+    for failures in 0.. {
         plan::release();
-        ROOM.set(HELD.get() + lacks * n * 4 + 2 * SMALL);
+        ROOM.set(HELD.get() + failures * n * 4 + 2 * SMALL);
         let made = make();
         ROOM.set(usize::MAX);
         if made.is_ok() {
-            return lacks;
+            return failures;
         }
     }
     unreachable!()
 }
 
-fn of_any_length<T: Real>() {
-    // Small prime factors, a large one, primes.
+/// Plans transforms of lengths with small prime factors, with a large one, and of primes.
+fn plan_any_length<T: Real>() {
     for n in [6000, 27040, 65536, 100_004, 11_999, 20_789, 997] {
-        assert!(lacks(n, || ColumnTransform::<T>::new(n)) > 3, "{n}");
-        assert!(lacks(n, || RowTransform::<T>::new(n)) > 1, "{n}, a row");
+        assert!(failures(n, || ColumnTransform::<T>::new(n)) > 3, "{n}");
+        assert!(failures(n, || RowTransform::<T>::new(n)) > 1, "{n}, a row");
     }
 }
 
 #[test]
 fn plans_without_memory_are_refused() {
-    of_any_length::<f64>();
-    of_any_length::<f32>();
+    plan_any_length::<f64>();
+    plan_any_length::<f32>();
 }
 
 #[test]
 fn products_without_memory_for_their_plans_are_refused() {
     let make = || toeplitz::Product::<f64>::new((3000, 1), (6000, 1), &par::threads::Threads::One);
-    assert!(lacks(6000, make) > 3);
+    assert!(failures(6000, make) > 3);
     let by_stages = || toeplitz::Product::<f64>::new((1000, 400), (2000, 800), &par::threads::Threads::One);
-    assert!(lacks(2000, by_stages) > 3);
+    assert!(failures(2000, by_stages) > 3);
 }

@@ -1,9 +1,9 @@
-//! Products by FFT against sums term by term: all kinds of coefficients and grids, both precisions, several numbers of threads.
+//! Compares products by FFT with sums term by term, for all kinds of coefficients and grids, both precisions and several numbers of threads.
 
 use par::threads::Threads;
 use toeplitz::{dense, Coefficients, Complex, Even, Product, Real, SetUp};
 
-/// One element, one row, one column, odd and even sizes, several blocks of columns, lengths of stages and others.
+/// Grids of one element, one row and one column, of odd and even sizes, with several blocks of columns, and with periods that have stages or not.
 const GRIDS: [(usize, usize); 10] =
     [(1, 1), (9, 1), (1, 9), (40, 1), (2, 3), (7, 5), (16, 16), (33, 20), (50, 47), (130, 36)];
 
@@ -14,14 +14,16 @@ fn values<T: Real>((mx, my): (usize, usize)) -> Vec<T> {
     (0..mx * my).map(|i| if loaded.contains(&(i / mx)) { value(i) } else { T::zero() }).collect()
 }
 
-/// Coefficients that fall off from the centre; `skew` makes them uneven.
+/// Coefficients that decrease with the offset.
 #[derive(Clone, Copy)]
 struct FallOff {
-    /// Amplitudes of two parts: one with `c(k) = c(-k)` that is not even, and one without symmetry.
+    /// The amplitudes of two parts that are not even in each direction: one with `c(k) = c(-k)`, and one without symmetry. If both are 0, the
+    /// coefficients are even.
     skew: [f64; 2],
 }
 
 impl FallOff {
+    /// The coefficient at an offset.
     fn at(&self, kx: i64, ky: i64) -> f64 {
         let (x, y) = (kx as f64, ky as f64);
         let r2 = 1.0 + x * x + 0.7 * y * y;
@@ -43,7 +45,7 @@ impl Coefficients for FallOff {
     }
 }
 
-/// A product in precision T.
+/// The product by these coefficients, in precision T.
 fn product<T: Real>(c: FallOff, grid: (usize, usize), threads: &Threads) -> Product<T> {
     match c.skew {
         [0.0, 0.0] => Product::even(grid, |kx, ky| c.at(kx as i64, ky as i64), threads),
@@ -52,7 +54,7 @@ fn product<T: Real>(c: FallOff, grid: (usize, usize), threads: &Threads) -> Prod
     .expect("memory")
 }
 
-/// The largest error relative to the largest value.
+/// The largest error of a product, relative to its largest value.
 fn error<T: Real>(product: &Product<T>, c: FallOff) -> f64 {
     let (p, grid) = (values::<T>(product.grid()), product.grid());
     let mut u = vec![T::nan(); p.len()];
@@ -70,8 +72,8 @@ fn error<T: Real>(product: &Product<T>, c: FallOff) -> f64 {
     }
 }
 
-/// The largest error allowed: each of the log2 steps of both transforms, there and back, and the product with S round once or twice. The values of p
-/// are of one size and c falls off, so that no sum is much smaller than its terms.
+/// The largest relative error that is allowed. Each of the log2 steps of both transforms, there and back, rounds once or twice, and so does the
+/// product with S. The values of p are of one size and c decreases with the offset, so no sum is much smaller than its terms.
 fn allowed<T: Real>(grid: (usize, usize)) -> f64 {
     let steps = ((4 * grid.0 * grid.1) as f64).log2() + 1.0;
     8.0 * steps * T::epsilon().to_double()
@@ -101,7 +103,7 @@ fn the_bits_do_not_depend_on_threads() {
                 let product = product::<f64>(FallOff { skew }, grid, threads);
                 let (p, mut memory) = (values(grid), product.memory().expect("memory"));
                 let mut u = vec![f64::NAN; p.len()];
-                // Twice: the second product must not depend on what the first one left in memory.
+                // The product is computed twice: the second one must not depend on what the first one left in memory.
                 product.apply(&p, &mut u, &mut memory);
                 product.apply(&p, &mut u, &mut memory);
                 u.into_iter().map(f64::to_bits).collect::<Vec<_>>()
@@ -124,7 +126,7 @@ fn a_known_symbol_is_that_of_its_coefficients() {
     let (p, mut memory) = (values::<f64>(grid), product.memory().expect("memory"));
     let (mut u, mut of_values) = (vec![0.0; p.len()], vec![0.0; p.len()]);
     product.apply(&p, &mut u, &mut memory);
-    // F c, term by term.
+    // The symbol F c, term by term.
     let wave = |k: i64, bin: usize, period: usize| {
         Complex::from_polar(1.0, -std::f64::consts::TAU * (k * bin as i64) as f64 / period as f64)
     };

@@ -1,11 +1,11 @@
-//! Random bytes, the same at each run, through the fuzz target.
+//! Calls the fuzz target with random bytes, which are the same in each run.
 
 mod bytes;
 
 #[test]
 fn products_from_random_bytes_are_those_term_by_term() {
     let mut state = 1_u64;
-    // Knuth's linear congruence.
+    // Knuth's linear congruential generator MMIX.
     let mut draw = move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as u8

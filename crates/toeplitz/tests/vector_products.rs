@@ -1,15 +1,15 @@
-//! Products of two components against sums term by term: for all kinds of coefficients, on grids from one element to several blocks of columns, in
-//! both precisions, with one thread and several.
+//! Compares products of two components with sums term by term: for all kinds of coefficients, on grids from one element to several blocks of columns,
+//! in both precisions, with one thread and several.
 
 use std::ops::Range;
 
 use par::threads::Threads;
 use toeplitz::{dense, vector_period, EvenMatrix, Real, VectorProduct};
 
-/// One element, one row, one column, odd and even sizes, several blocks of columns.
+/// Grids of one element, one row and one column, of odd and even sizes, and with several blocks of columns.
 const GRIDS: [(usize, usize); 8] = [(1, 1), (9, 1), (1, 9), (2, 3), (7, 5), (16, 16), (33, 20), (70, 24)];
 
-/// xx, yy and xy at an offset: xx and yy are even in both directions, xy is odd in both.
+/// xx, yy and xy at the offset (x, y): xx and yy are even in both directions, xy is odd in both.
 fn even(x: f64, y: f64) -> [f64; 3] {
     let r2 = 1.0 + x * x + 0.7 * y * y;
     [1.0 / r2.sqrt(), (1.0 + 0.3 * y * y / r2) / r2.sqrt(), 0.4 * x * y / (r2 * r2.sqrt())]
@@ -21,7 +21,7 @@ fn values((mx, my): (usize, usize), seed: usize) -> Vec<f64> {
     (0..mx * my).map(|i| if (my / 4..my - my / 5).contains(&(i / mx)) { value(i) } else { 0.0 }).collect()
 }
 
-/// The product of fields in double precision, whatever T is.
+/// Computes u = A q. Both fields are in double precision, whatever the precision T of the product.
 fn apply<T: Real>(product: &VectorProduct<T>, q: [&[f64]; 2]) -> [Vec<f64>; 2] {
     let ((mx, my), together) = (product.grid(), product.rows_at_a_time());
     let mut u = [vec![f64::NAN; mx * my], vec![f64::NAN; mx * my]];
@@ -43,19 +43,19 @@ fn apply<T: Real>(product: &VectorProduct<T>, q: [&[f64]; 2]) -> [Vec<f64>; 2] {
     u
 }
 
-/// The largest error, relative to the largest sum of the terms' absolute values.
+/// The largest error of a product by the coefficients c = [xx, yy, xy], relative to the largest sum of the absolute values of its terms.
 fn error<T: Real>(product: &VectorProduct<T>, c: impl Fn(i64, i64) -> [f64; 3], q: [&[f64]; 2]) -> f64 {
     let (grid, found, mut largest) = (product.grid(), apply(product, q), 0.0);
     for (component, found) in found.iter().enumerate() {
         let mut sums = [vec![0.0; found.len()], vec![0.0; found.len()]];
         let mut scale = vec![0.0; found.len()];
         for (from, sums) in sums.iter_mut().enumerate() {
-            let place = if from == component { component } else { 2 };
-            dense::apply(grid, |x, y| c(x, y)[place], q[from], sums);
-            let size: Vec<f64> = q[from].iter().map(|q| q.abs()).collect();
-            let mut sizes = vec![0.0; found.len()];
-            dense::apply(grid, |x, y| c(x, y)[place].abs(), &size, &mut sizes);
-            scale.iter_mut().zip(sizes).for_each(|(scale, size)| *scale += size);
+            let coefficient = if from == component { component } else { 2 };
+            dense::apply(grid, |x, y| c(x, y)[coefficient], q[from], sums);
+            let absolute_q: Vec<f64> = q[from].iter().map(|q| q.abs()).collect();
+            let mut absolute_sums = vec![0.0; found.len()];
+            dense::apply(grid, |x, y| c(x, y)[coefficient].abs(), &absolute_q, &mut absolute_sums);
+            scale.iter_mut().zip(absolute_sums).for_each(|(scale, sum)| *scale += sum);
         }
         let most = scale.iter().fold(1e-300, |most: f64, scale| most.max(*scale));
         for (k, found) in found.iter().enumerate() {
@@ -66,11 +66,13 @@ fn error<T: Real>(product: &VectorProduct<T>, c: impl Fn(i64, i64) -> [f64; 3], 
     largest
 }
 
-/// The error to be expected: S, and each of the log2 steps of the transforms there and back, round once or twice.
+/// The largest relative error that is allowed: each of the log2 steps of the transforms there and back rounds once or twice, and so does the product
+/// with S.
 fn allowed<T: Real>(grid: (usize, usize)) -> f64 {
     8.0 * (((4 * grid.0 * grid.1) as f64).log2() + 1.0) * T::epsilon().to_double()
 }
 
+/// The product by [`even`]. Its period in x has room for `beyond` more offsets than the grid.
 fn even_product<T: Real>(grid: (usize, usize), beyond: usize, is_coupled: bool, threads: &Threads) -> VectorProduct<T> {
     let fill = |component: usize, ky: i64, row: &mut [f64]| {
         row.iter_mut().enumerate().for_each(|(kx, value)| *value = even(kx as f64, ky as f64)[component]);
@@ -123,7 +125,8 @@ fn differences_are_direct_sums() {
     }
 }
 
-/// The symbol is a few cosines and sines, so only the nearest offsets have coefficients. A period two elements longer than the grid keeps them apart.
+/// The symbol is a sum of a few cosines and sines, so only the nearest offsets have coefficients. A period that is two elements longer than the grid
+/// keeps these offsets apart.
 #[test]
 fn products_of_a_symbol_are_direct_sums() {
     let nearest = |x: i64, y: i64| match (x.abs(), y.abs()) {
@@ -137,13 +140,14 @@ fn products_of_a_symbol_are_direct_sums() {
         let (x, y) = (values(grid, 1), values(grid, 2));
         let period = vector_period((grid.0 + 2, grid.1 + 2));
         let wave = |kx: usize, ky: usize| {
-            let turn = |k: usize, period: usize| 2.0 * std::f64::consts::PI * k as f64 / period as f64;
-            let (tx, ty) = (turn(kx, period.0), turn(ky, period.1));
-            let [own, in_x, in_y, both] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| nearest(x, y));
+            let angle = |k: usize, period: usize| 2.0 * std::f64::consts::PI * k as f64 / period as f64;
+            let (ax, ay) = (angle(kx, period.0), angle(ky, period.1));
+            let [centre, in_x, in_y, diagonal] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| nearest(x, y));
             let sum = |k: usize| {
-                own[k] + 2.0 * in_x[k] * tx.cos() + 2.0 * in_y[k] * ty.cos() + 4.0 * both[k] * tx.cos() * ty.cos()
+                let in_lines = centre[k] + 2.0 * in_x[k] * ax.cos() + 2.0 * in_y[k] * ay.cos();
+                in_lines + 4.0 * diagonal[k] * ax.cos() * ay.cos()
             };
-            [sum(0), sum(1), -4.0 * both[2] * tx.sin() * ty.sin()]
+            [sum(0), sum(1), -4.0 * diagonal[2] * ax.sin() * ay.sin()]
         };
         let product = VectorProduct::<f64>::of_waves(grid, period, (is_coupled, wave), &Threads::One).expect("memory");
         let c = |x: i64, y: i64| {
@@ -200,7 +204,7 @@ fn a_component_alone_displaces_in_its_own_direction_only() {
 
 #[test]
 fn the_inverse_of_a_circulant_undoes_its_product() {
-    // On a grid of one whole period A is the circulant of this symbol, and the product by the inverse symbol undoes its product.
+    // On a grid of one whole period, A is the circulant matrix of its symbol. The inverse symbol gives the inverse of A.
     let (grid, periods) = ((16, 10), vector_period((16, 10)));
     assert_eq!(periods, grid, "a grid of one period");
     let fill = |component: usize, ky: i64, row: &mut [f64]| {
@@ -223,7 +227,8 @@ fn the_inverse_of_a_circulant_undoes_its_product() {
     let q = [values(grid, 1), values(grid, 2)];
     let u = apply(&there, [&q[0], &q[1]]);
     let again = apply(&back, [&u[0], &u[1]]);
-    // Its eigenvalues lie between 0.75 and 47. So errors of the first product, relative to sums of 50, grow by 1/0.75; those of the second are added.
+    // The eigenvalues of A lie between 0.75 and 47. The second product multiplies errors of the first one, which are relative to sums of up to 50, by
+    // at most 1/0.75. The errors of the second product are added.
     for (q, again) in q.iter().flatten().zip(again.iter().flatten()) {
         assert!((q - again).abs() <= 200.0 * allowed::<f64>(grid), "{q} {again}");
     }

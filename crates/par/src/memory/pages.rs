@@ -1,8 +1,8 @@
-//! The pages of large arrays: first touched by all threads, and given back.
+//! The pages of large arrays: all threads write to them first, and they return to the system while an array rests.
 
 use crate::threads::Threads;
 
-/// Returns the pages within the capacity of an empty array to the system, which maps them again at the next touch.
+/// Returns the pages within the capacity of an empty array to the system. The system maps them again at the next access.
 #[cfg(target_os = "linux")]
 #[allow(unsafe_code)]
 pub(super) fn give_pages_back<A>(values: &mut Vec<A>) {
@@ -13,7 +13,7 @@ pub(super) fn give_pages_back<A>(values: &mut Vec<A>) {
     let before = (room as usize).next_multiple_of(page) - room as usize;
     let whole = bytes.saturating_sub(before) / page * page;
     if whole > 0 {
-        // SAFETY: whole pages of the array's own capacity, which is borrowed mutably and holds no values.
+        // SAFETY: these are whole pages within the capacity of the array, which is borrowed mutably and holds no values.
         unsafe { libc::madvise(room.wrapping_byte_add(before).cast(), whole, libc::MADV_DONTNEED) };
     }
 }
@@ -21,11 +21,11 @@ pub(super) fn give_pages_back<A>(values: &mut Vec<A>) {
 #[cfg(not(target_os = "linux"))]
 pub(super) fn give_pages_back<A>(_: &mut Vec<A>) {}
 
-/// Least bytes that one thread touches.
+/// The least number of bytes that one thread writes in [`lengthen`].
 const LEAST_TOUCHED: usize = 1 << 19;
 
-/// Extends an array to n values within its capacity. The threads share the first writes: the system clears each page at its first touch,
-/// which takes as long as several passes.
+/// Makes an array n values long, within its capacity; new values are `mark`. The threads share these first writes: the system clears each page at its
+/// first access, which takes as long as several passes over the page.
 #[allow(unsafe_code)]
 pub(super) fn lengthen<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
     let (known, piece) = (values.len(), LEAST_TOUCHED / size_of::<A>());
@@ -37,6 +37,6 @@ pub(super) fn lengthen<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mar
             value.write(mark);
         });
     });
-    // SAFETY: all values up to n have been written: the known ones before, the others, within the capacity, above.
+    // SAFETY: all values up to n have been written: the first ones before this call, and the others, within the capacity, above.
     unsafe { values.set_len(n) };
 }

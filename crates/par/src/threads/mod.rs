@@ -1,48 +1,50 @@
-//! The threads of one solve, or of a batch of solves: the caller's thread alone, or a pool.
+//! The threads of one solve, or of a batch of solves: the caller's thread alone, or the caller's thread and workers.
 //!
-//! Work is divided into pieces whose results do not depend on the thread that computes them. So results have the same bits for
-//! any number of threads. Code inlined here is compiled for the vector instructions of this machine. No bit depends on them either, because no
-//! operations are fused or reordered.
+//! Work is divided into pieces whose results do not depend on the thread that computes them. So results have the same bits for any number of threads.
+//! The functions here that call pieces are inlined in code that is compiled for the vector instructions of this machine. No bit depends on these
+//! instructions either, because no operations are fused or reordered.
 
 mod busy;
-#[allow(unsafe_code)] // lifetimes of work that workers share
-mod crew;
-#[allow(unsafe_code)] // the record of the process
+#[allow(unsafe_code)] // The record of the process is a pointer.
 mod pool;
-#[allow(unsafe_code)] // lifetimes of work that workers share
+#[allow(unsafe_code)] // Workers call a function whose lifetime the compiler does not see.
 mod region;
 mod shared;
-#[allow(unsafe_code)] // masks of signals
+#[allow(unsafe_code)] // Calls of libc for masks of signals.
 mod signals;
+#[allow(unsafe_code)] // Workers call a function whose lifetime the compiler does not see.
+mod workers;
 
 use std::sync::{Mutex, PoisonError};
 
-pub use crew::{is_worker, THREAD_NAME};
 use pool::Pool;
 pub use pool::{kept, release};
 pub use shared::{made_once, Shared};
+pub use workers::{is_worker, THREAD_NAME};
 
 use crate::error::Result;
 
-/// The threads that do the work.
+/// The threads that share the work of a caller.
 #[derive(Clone, Default)]
 pub enum Threads {
-    /// The calling thread.
+    /// The calling thread alone.
     #[default]
     One,
-    /// A pool of workers.
+    /// The calling thread and workers of the process.
     Pool(Pool),
 }
 
-/// From this number of elements on a solve is faster if several threads share its products. A single product is faster from 64 x 64 on, but
-/// with that limit two threads took 1.11 times as long as one for a solve on 64 x 64 (docs/notes/2026-11-performance-targets.md).
+/// The least number of elements of a grid on which a solve is faster if several threads share its products. A single product is faster from 64 x 64
+/// elements on. With that limit, however, two threads took 1.11 times as long as one for a solve on 64 x 64
+/// (docs/notes/2026-11-performance-targets.md).
 const WORTH_WAKING: usize = 110 * 110;
 
-/// Pieces of work per thread. If one thread is delayed, the others take over its pieces. With 6 to 16 pieces measured times differ by noise.
+/// The number of pieces of work for each thread. If one thread is delayed, the others process its pieces. With 6 to 16 pieces, measured times differ
+/// by noise only.
 const PIECES_PER_THREAD: usize = 8;
 
 impl Threads {
-    /// `count` threads. 0 means one per core of the machine.
+    /// `count` threads, including the caller's. 0 stands for one thread per core of the machine.
     pub fn new(count: usize) -> Result<Threads> {
         let count = match count {
             0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
@@ -51,15 +53,15 @@ impl Threads {
         Ok(if count == 1 { Threads::One } else { Threads::Pool(Pool::of(count)?) })
     }
 
-    /// The pool; none if the calling thread works alone.
+    /// The pool of threads in this process. None if the calling thread works alone, or if a forked child cannot start threads.
     fn pool(&self) -> Option<Pool> {
         match self {
             Threads::One => None,
-            Threads::Pool(pool) => pool.here(),
+            Threads::Pool(pool) => pool.in_this_process(),
         }
     }
 
-    /// Number of threads. Each may need separate scratch.
+    /// The number of threads. Each may need its own scratch.
     pub fn count(&self) -> usize {
         match self {
             Threads::One => 1,
@@ -67,7 +69,7 @@ impl Threads {
         }
     }
 
-    /// Calls `work(k, item)` on each of some items.
+    /// Calls `work(k, item)` for each item, with its number k.
     pub fn for_each<A: Send>(&self, items: &mut [A], work: impl Fn(usize, &mut A) + Sync + Send) {
         self.share(
             items.iter_mut().enumerate(),
@@ -77,17 +79,17 @@ impl Threads {
         );
     }
 
-    /// Calls `work(piece, scratch)` on each of some pieces, with the scratch of its thread.
+    /// Calls `work(piece, scratch)` for each piece, where `scratch` is that of the calling thread. `scratch` has one item for each thread.
     ///
-    /// The threads take pieces until none is left. The caller begins at once, at the front, and does not wait for the
-    /// others to wake. They begin at the back. Thus a thread finds much of its data in its cache, from the previous pass.
+    /// The threads take pieces until none is left. The caller takes pieces from the front, and begins at once, without waiting for the workers to
+    /// wake. The workers take pieces from the back. So, in the next pass over the same data, each thread finds much of its data in its cache.
     pub fn share<P: Send, S: Send>(
         &self,
         pieces: impl DoubleEndedIterator<Item = P> + ExactSizeIterator + Send,
         scratch: &mut [S],
         work: impl Fn(P, &mut S) + Sync,
     ) {
-        self.hand_out(pieces, scratch, &|piece, scratch| {
+        self.share_pieces(pieces, scratch, &|piece, scratch| {
             pulp::Arch::new().dispatch(
                 #[inline(always)]
                 || work(piece, scratch),
@@ -95,8 +97,9 @@ impl Threads {
         });
     }
 
-    /// [`share`](Self::share), compiled once for all kinds of `work`: the library has 14.5 MB of machine code instead of 19.9.
-    fn hand_out<P: Send, S: Send>(
+    /// [`share`](Self::share), compiled once for each type of pieces instead of once for each `work`. With it the library has 14.5 MB of machine code
+    /// instead of 19.9 MB.
+    fn share_pieces<P: Send, S: Send>(
         &self,
         pieces: impl DoubleEndedIterator<Item = P> + ExactSizeIterator + Send,
         scratch: &mut [S],
@@ -108,12 +111,12 @@ impl Threads {
         let pieces = Mutex::new(pieces);
         let front = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next();
         let back = || pieces.lock().unwrap_or_else(PoisonError::into_inner).next_back();
-        let from_behind = |scratch: &mut S| {
+        let from_the_back = |scratch: &mut S| {
             while let Some(piece) = back() {
                 work(piece, scratch);
             }
         };
-        pool.share(others, &from_behind, || {
+        pool.share(others, &from_the_back, || {
             let mut count = 0;
             while let Some(piece) = front() {
                 work(piece, own);
@@ -123,18 +126,19 @@ impl Threads {
         });
     }
 
-    /// Scratch of work that needs none.
+    /// The scratch of work that needs none: one empty item for each thread.
     fn no_scratch(&self) -> Vec<()> {
         vec![(); self.count()]
     }
 
-    /// Rows of each piece of work on `rows` rows.
+    /// The number of rows of each piece, if `rows` rows are shared among the threads.
     fn rows_per_piece(&self, rows: usize) -> usize {
         let pieces = if self.count() == 1 { 1 } else { PIECES_PER_THREAD * self.count() };
         rows.div_ceil(pieces).max(1)
     }
 
-    /// Calls `own(item)` for the first item on the calling thread. Meanwhile the other threads call `others(item)` for the rest.
+    /// Calls `own(item)` for the first item on the calling thread. Meanwhile each free worker takes one of the other items and calls `others(item)`.
+    /// Items that no worker has taken when `own` returns are not processed. With one thread, `others` is called for all other items after `own`.
     pub fn for_each_beside<A: Send>(
         &self,
         items: &mut [A],
@@ -147,11 +151,12 @@ impl Threads {
                 own(first);
                 rest.iter_mut().for_each(others);
             }
-            Some(pool) => pool.beside(rest, &others, || own(first)),
+            Some(pool) => pool.run_with_workers(rest, &others, || own(first)),
         }
     }
 
-    /// Calls `work(row, its data, scratch)` on each row of `data`; the last row may be shorter.
+    /// Calls `work(number, row, scratch)` for each row of `data`. A row has `length` values; the last one may have fewer. `scratch` is that of the
+    /// calling thread.
     pub fn for_each_row<A: Send, S: Send>(
         &self,
         data: &mut [A],
@@ -172,7 +177,8 @@ impl Threads {
         );
     }
 
-    /// Calls `work(row, its data in a, its data in b, scratch)` on each row of both; the last row may be shorter.
+    /// Calls `work(number, row of a, row of b, scratch)` for each pair of rows of `a` and `b`, which are given with the lengths of their rows. The
+    /// last row may be shorter. `scratch` is that of the calling thread.
     pub fn for_each_row_pair_with<A: Send, B: Send, S: Send>(
         &self,
         (a, length_a): (&mut [A], usize),
@@ -194,7 +200,7 @@ impl Threads {
         );
     }
 
-    /// Calls `work(row, its data)` on each row of `data`; the last row may be shorter.
+    /// Calls `work(number, row)` for each row of `data`. A row has `length` values; the last one may have fewer.
     pub fn for_each_plain_row<A: Send>(
         &self,
         data: &mut [A],
@@ -210,7 +216,8 @@ impl Threads {
         );
     }
 
-    /// Calls `work(row, its data in a, its data in b)` on each row of both; the last row may be shorter.
+    /// Calls `work(number, row of a, row of b)` for each pair of rows of `a` and `b`, which are given with the lengths of their rows. The last row
+    /// may be shorter.
     pub fn for_each_row_pair<A: Send, B: Send>(
         &self,
         a: (&mut [A], usize),
@@ -226,12 +233,13 @@ impl Threads {
         );
     }
 
-    /// The threads for one pass over arrays. A pass needs twice as many elements as a solve to gain by several threads.
+    /// The threads for one pass over arrays of this many elements. Several threads save time in a pass if it has twice as many elements as a solve
+    /// needs for that.
     pub fn for_a_pass(&self, elements: usize) -> Threads {
         self.suited_to(elements / 2)
     }
 
-    /// The threads for work on this many elements. The caller's thread works alone if waking the others takes longer than the work.
+    /// The threads for a solve on this many elements. The calling thread works alone if waking workers would take longer than the work.
     pub fn suited_to(&self, elements: usize) -> Threads {
         if elements < WORTH_WAKING {
             Threads::One

@@ -1,4 +1,4 @@
-//! The times at which work is shared again, with given times instead of a clock.
+//! The times at which work is shared again. The tests give the times; they do not read a clock.
 
 use super::*;
 
@@ -20,12 +20,12 @@ fn what_goes_well_for_as_long_is_forgotten() {
     let busy = Busy::default();
     busy.note(0, true);
     busy.note(FIRST_ALONE, true);
-    // The try lasts for less than the last time alone.
+    // Work is shared for less time than the caller worked alone before: the next loss is a further one.
     let tried = 3 * FIRST_ALONE;
     busy.note(tried + FIRST_ALONE, false);
     busy.note(tried + FIRST_ALONE, true);
     assert!(!busy.is_over(tried + 5 * FIRST_ALONE - 1) && busy.is_over(tried + 5 * FIRST_ALONE));
-    // The try lasts for longer.
+    // Work is shared for longer than that: the next loss counts as the first.
     busy.note(tried + 10 * FIRST_ALONE, false);
     busy.note(tried + 10 * FIRST_ALONE, true);
     assert!(busy.is_over(tried + 11 * FIRST_ALONE));

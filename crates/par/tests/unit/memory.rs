@@ -1,4 +1,4 @@
-//! Kept memory is reused, within its limit, without its old values. The tests share one shelf, so each uses a separate type.
+//! Kept memory is reused, within its limit, without its old values. The tests share one list of kept arrays, so each uses a separate type.
 
 use super::*;
 
@@ -11,7 +11,7 @@ fn a_kept_block_serves_the_next_request_of_its_type_and_size() {
     first.fill(Own([7; 2]));
     let address = first.as_ptr();
     keep_one(first);
-    // Arrays that are too large by more than a quarter, too small, or of another type do not take it.
+    // The kept array does not serve requests for which it is too large by more than a quarter or too small, or of another type.
     let others = [zeros::<Own>(n * 4 / 5 - 1, "the test").unwrap(), zeros(n + 1, "the test").unwrap()];
     assert!(others.iter().all(|other| other.as_ptr() != address));
     let of_another_type: Vec<[u64; 2]> = zeros(n, "the test").unwrap();

@@ -1,4 +1,4 @@
-//! The pool of a process, also of one that was forked at the worst moment.
+//! Pools of threads after a fork at the worst moment: while another thread of the parent holds the lock of the workers.
 
 use super::*;
 
@@ -6,8 +6,8 @@ use super::*;
 #[cfg(target_os = "linux")]
 fn a_child_that_is_forked_while_a_pool_is_made_makes_its_own() {
     let before = Pool::of(2).expect("threads");
-    // As if another thread were making one.
-    let held = crew();
+    // The lock is held, as if another thread were making a pool.
+    let held = workers();
     // SAFETY: the child makes a pool, works with it, and ends without any of its parent's exit handlers.
     let child = unsafe { libc::fork() };
     if child == 0 {
@@ -15,8 +15,8 @@ fn a_child_that_is_forked_while_a_pool_is_made_makes_its_own() {
         // SAFETY: both end this process only.
         unsafe { libc::alarm(60) };
         let mut items = [0; 1];
-        let pool = before.here().expect("threads");
-        pool.beside(&mut items, &|item| *item += 1, || ());
+        let pool = before.in_this_process().expect("threads");
+        pool.run_with_workers(&mut items, &|item| *item += 1, || ());
         release();
         drop((pool, before));
         // SAFETY: as above.

@@ -1,4 +1,4 @@
-//! Sums in lanes, and the least value, compared with a loop over the elements. The values are whole numbers, whose sums have no rounding.
+//! Compares sums in lanes and the smallest value with loops over the elements. The values are whole numbers, whose sums have no round-off.
 
 use super::{least, sum_where, Sums};
 
@@ -40,7 +40,7 @@ fn the_least_of_all_values() {
 fn sums_where_it_counts() {
     for n in 0..=23 {
         let counts: Vec<bool> = (0..n).map(|i| i % 3 == 1).collect();
-        // Elements that do not count are infinite, like those without a surface.
+        // Elements that do not count have infinite values, like the distances of excluded elements.
         let a: Vec<f64> = (0..n).map(|i| if i % 3 == 1 { i as f64 } else { f64::INFINITY }).collect();
         let b: Vec<f64> = (0..n).map(|i| (7 * i % 11) as f64).collect();
         let those = || (0..n).filter(|i| i % 3 == 1);

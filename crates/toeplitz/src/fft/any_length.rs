@@ -1,6 +1,7 @@
-//! Complex transforms of any length, by the FFT crate.
+//! Complex transforms of any length, by the crate rustfft.
 //!
-//! Each length has a planner of its own: a shared planner reuses parts of earlier plans, so that bits would depend on the history.
+//! Each length is planned by a new planner of rustfft. A shared planner would reuse parts of earlier plans, so the bits of a transform would depend
+//! on which lengths were planned before.
 
 use std::sync::Arc;
 
@@ -12,14 +13,14 @@ use crate::passes::Real;
 use crate::plan::{shared, Plan, PLAN};
 use crate::real::Complex;
 
-/// Values allocated while the plans of a length are made, both directions, relative to the length. Measured at all lengths up to 100000 in
-/// steps of 257 and at longer ones: up to 2.3 if all prime factors are small, and 16.5 for primes, which use a transform of more than twice the
-/// length.
+/// The number of complex values that rustfft allocates while it plans both directions of a length, relative to the length: if all prime factors are
+/// small, and otherwise. In measurements at lengths up to 100000, in steps of 257, and at longer ones, it was at most 2.3 with small prime factors.
+/// It was at most 16.5 for primes, which use a transform of more than twice the length.
 const RELATIVE_SIZES: [usize; 2] = [3, 17];
-/// The largest prime whose transform is one step.
+/// The largest small prime: rustfft transforms it in one step.
 const SMALL_PRIME: usize = 31;
 
-/// Values reserved before a length is planned.
+/// The number of complex values that must be available before a length is planned.
 fn room(length: usize) -> usize {
     let (mut rest, mut prime) = (length, 2);
     while rest > 1 && prime <= SMALL_PRIME {
@@ -31,7 +32,7 @@ fn room(length: usize) -> usize {
     length.saturating_mul(RELATIVE_SIZES[usize::from(rest > 1)])
 }
 
-/// Makes the scratch of transforms at least this long.
+/// Lengthens the scratch of transforms to this length, if it is shorter.
 pub fn fit<T: Real>(scratch: &mut Vec<Complex<T>>, length: usize) -> Result<()> {
     let length = scratch.len().max(length);
     reserve(scratch, length, "the scratch of transforms")?;
@@ -39,14 +40,15 @@ pub fn fit<T: Real>(scratch: &mut Vec<Complex<T>>, length: usize) -> Result<()> 
     Ok(())
 }
 
-/// Scratch of this length.
+/// Allocates scratch of this length.
 pub fn scratch_of<T: Real>(length: usize) -> Result<Vec<Complex<T>>> {
     let mut scratch = Vec::new();
     fit(&mut scratch, length)?;
     Ok(scratch)
 }
 
-/// Complex transforms of one length, many columns at a time (unnormalised).
+/// Complex transforms of columns of one length and their inverses. Both are unnormalised: a column transformed there and back is `length` times
+/// itself.
 #[derive(Clone)]
 pub struct ColumnTransform<T: Real> {
     forward: Arc<dyn Fft<T>>,
@@ -60,7 +62,7 @@ impl<T: Real> Plan for ColumnTransform<T> {
 }
 
 impl<T: Real> ColumnTransform<T> {
-    /// Plans for columns of length `n`. The FFT crate aborts without memory, so room for its plans is tested before.
+    /// Makes the plans for columns of length `n`. Without memory rustfft would end the process, so this function first tests whether there is enough.
     pub fn new(n: usize) -> Result<ColumnTransform<T>> {
         Ok((*shared(n, || ColumnTransform::planned(n))?).clone())
     }
@@ -72,28 +74,28 @@ impl<T: Real> ColumnTransform<T> {
         Ok(ColumnTransform { forward, inverse })
     }
 
-    /// Length of a column.
+    /// The length of a column.
     pub fn length(&self) -> usize {
         self.forward.len()
     }
 
-    /// Scratch for both directions.
+    /// Allocates the scratch of the transforms in both directions.
     pub fn scratch(&self) -> Result<Vec<Complex<T>>> {
         scratch_of(self.scratch_length())
     }
 
-    /// Makes scratch long enough.
+    /// Lengthens scratch to [`scratch_length`](Self::scratch_length), if it is shorter.
     pub fn fit(&self, scratch: &mut Vec<Complex<T>>) -> Result<()> {
         fit(scratch, self.scratch_length())
     }
 
-    /// The length of the scratch.
+    /// The length of the scratch that all transforms need, in place and out of place.
     pub fn scratch_length(&self) -> usize {
         let length = |fft: &dyn Fft<T>| fft.get_inplace_scratch_len().max(fft.get_outofplace_scratch_len());
         length(&*self.forward).max(length(&*self.inverse))
     }
 
-    /// The length of the scratch of transforms out of place.
+    /// The length of the scratch that transforms out of place need.
     pub fn scratch_to(&self) -> usize {
         self.forward.get_outofplace_scratch_len().max(self.inverse.get_outofplace_scratch_len())
     }
@@ -103,7 +105,7 @@ impl<T: Real> ColumnTransform<T> {
         self.forward.process_outofplace_with_scratch(column, to, scratch);
     }
 
-    /// The inverse transform of one column, out of place; `column` is overwritten.
+    /// Transforms one column back, out of place; `column` is overwritten.
     pub fn inverse_to(&self, column: &mut [Complex<T>], to: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
         self.inverse.process_outofplace_with_scratch(column, to, scratch);
     }
@@ -113,7 +115,7 @@ impl<T: Real> ColumnTransform<T> {
         self.forward.process_with_scratch(columns, scratch);
     }
 
-    /// The inverse transforms of consecutive columns, in place.
+    /// Transforms consecutive columns back in place.
     pub fn inverse(&self, columns: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
         self.inverse.process_with_scratch(columns, scratch);
     }

@@ -1,7 +1,8 @@
-//! The pass of [`LaneColumns`](crate::fft::lane_columns::LaneColumns) over a block of columns.
+//! The product of a block of columns by the symbol, `F^-1 (S . F columns)`, with the transforms of
+//! [`LaneColumns`](crate::fft::lane_columns::LaneColumns).
 //!
-//! The first stage of F reads the rows of the grid, the last stage of its inverse writes them; the last stage of F, the product by S and
-//! the first stage of the inverse are one pass. A vector of columns is prefetched during the work on the one before.
+//! The first stage of F reads the rows of the grid, and the last stage of F^-1 writes them. The last stage of F, the product by S and the first stage
+//! of F^-1 are one pass over memory. While one vector of columns is transformed, the next one is prefetched.
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -14,34 +15,38 @@ use crate::fft::lanes::{lane_count, Arithmetic, Parts, C};
 use crate::fft::stages::{backwards, first, forward, inlined, last, multiply, of_radix, rows_of, Row};
 use crate::real::{Complex, Scalar};
 
-/// The same block of columns of K components.
+/// One block of columns, for each of K components.
 pub struct Blocks<'a, T, const K: usize> {
+    /// The values, `[row][part][column]`.
     pub blocks: [&'a mut [Complex<T>]; K],
-    /// Number of defined columns.
+    /// The number of columns from the first of the block to the last bin in x. Columns of the block beyond it are undefined.
     pub columns: usize,
-    /// Addresses of the next blocks, which have as many rows; used for prefetching only.
+    /// The addresses of the blocks that are probably multiplied next. Only prefetches use them.
     pub next: [*const Complex<T>; K],
-    /// Rows that hold values.
+    /// The rows that hold values. All others count as zero.
     pub loaded: [Range<usize>; K],
 }
 
-/// The place of values in a block of columns: bin q of a block of the last stage, in one vector of columns. `row` is
-/// the first row of that block.
+/// The place of one vector of values in a block of columns: bin number q of a block of the last stage, in one vector of columns.
 #[derive(Clone, Copy)]
 pub struct At<'a> {
+    /// The kept rows of an even symbol for this block of the last stage.
     pub kept: &'a Kept,
+    /// The first row of this block of the last stage.
     pub row: usize,
+    /// The number of the bin in this block of the last stage.
     pub q: usize,
+    /// The number of the vector among those of the block's columns.
     pub vector: usize,
 }
 
-/// The symbol of a block of columns of K components.
+/// A symbol in a block of columns, which multiplies K components.
 pub trait Factor<T: Scalar, const K: usize> {
-    /// The product of values by the symbol.
+    /// Returns the product of the symbol at the place `at` and the values x of all components there.
     fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, x: [C<T, S>; K]) -> [C<T, S>; K];
 }
 
-/// Scalar values, `[kept row][column]`, of one component.
+/// The even symbol of one component in a block of columns, `[kept row][column]`.
 pub struct EvenSymbol<'a, T>(pub &'a [T]);
 
 impl<T: Scalar> Factor<T, 1> for EvenSymbol<'_, T> {
@@ -51,24 +56,25 @@ impl<T: Scalar> Factor<T, 1> for EvenSymbol<'_, T> {
     }
 }
 
-/// The values of an even symbol, `[kept row][column]`.
+/// The values of a real symbol, `[kept row][column]`, at the place `at`.
 #[inline(always)]
 pub fn even_value<T: Scalar, S: Simd>(symbol: &[T], At { kept, q, vector, .. }: At<'_>) -> T::Vector<S> {
     T::vectors::<S>(symbol)[kept.row(q) * (BLOCK / lane_count::<T, S>()) + vector]
 }
 
-/// One pass over the columns of a block of K components, which multiplies them by their symbol `factor`.
+/// Transforms a block of columns of K components, multiplies it by the symbol `factor` and transforms it back, in place.
 pub struct Multiply<'a, T: Scalar, F, const K: usize> {
     pub plan: &'a EvenPlan<T>,
     pub blocks: Blocks<'a, T, K>,
     pub factor: &'a F,
+    /// Memory for one vector of columns of each component.
     pub memory: &'a mut [Complex<T>],
 }
 
 impl<T: Scalar, F: Factor<T, K>, const K: usize> WithSimd for Multiply<'_, T, F, K> {
     type Output = ();
 
-    /// Takes one vector of columns after the other, so that each stays in the nearest cache.
+    /// Multiplies one vector of columns after the other, so that its values stay in the first-level cache.
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
         for (block, loaded) in self.blocks.blocks.iter().zip(&self.blocks.loaded) {
@@ -85,7 +91,7 @@ impl<T: Scalar, F: Factor<T, K>, const K: usize> WithSimd for Multiply<'_, T, F,
 }
 
 impl<T: Scalar, F: Factor<T, K>, const K: usize> Multiply<'_, T, F, K> {
-    /// Multiplies the columns of one vector of the blocks, and prefetches vector `next` of `next_blocks`.
+    /// Multiplies the columns of vector number `vector` of the blocks. Meanwhile it prefetches vector number `next` of `next_blocks`.
     #[inline(always)]
     fn one_vector<S: Simd>(&mut self, simd: S, vector: usize, (next_blocks, next): ([*const Complex<T>; K], usize)) {
         let Multiply { plan, blocks: Blocks { blocks, loaded, .. }, factor, memory } = self;
@@ -142,9 +148,9 @@ impl<T: Scalar, F: Factor<T, K>, const K: usize> Multiply<'_, T, F, K> {
     }
 }
 
-/// The stages between the first and the last, with the product
-/// `product(kept rows of a block, its first row, bin q of the block, values)`. `prefetch_part(part, count)` prefetches
-/// one part of the next vector.
+/// Applies all stages of both transforms except the first of F and the last of F^-1, and the product by the symbol between both. `product(kept, row,
+/// q, x)` multiplies the values x of bin q in a block of the last stage, with the kept rows `kept` and the first row `row`. `prefetch_part(part,
+/// count)` prefetches part number `part` of `count` parts of the next vector.
 #[inline(always)]
 fn between<T: Scalar, S: Simd, const K: usize>(
     a: Arithmetic<T, S>,
@@ -160,14 +166,14 @@ fn between<T: Scalar, S: Simd, const K: usize>(
             of_radix!(stage.radix, forward, a, stage, rows);
         }
     }
-    // Then part by part: a part fits in the nearest cache.
+    // The other stages process one part of the rows after the other: a part fits in the first-level cache.
     let blocks = stages.part / stages.last;
-    let (mut part, parts) = (0, stages.length() / stages.part * (2 * near.len() + 1));
+    let (mut step, steps) = (0, stages.length() / stages.part * (2 * near.len() + 1));
     let mut prefetch_next = inlined(
         #[inline(always)]
         || {
-            prefetch_part(part, parts);
-            part += 1;
+            prefetch_part(step, steps);
+            step += 1;
         },
     );
     for (first, kept) in (0..stages.length()).step_by(stages.part).zip(plan.kept.chunks_exact(blocks)) {

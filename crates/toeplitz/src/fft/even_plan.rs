@@ -1,7 +1,8 @@
-//! Storage of the symbol of even columns.
+//! The order in which an even symbol S is stored.
 //!
-//! Bins stay in the order of the stages' output ([`stages`](crate::fft::stages)). The mirror image py - k of a block of bins of the last
-//! stage is a block in reverse order, with the same values of S. One of the two is stored.
+//! The stages ([`stages`](crate::fft::stages)) leave the bins of a column in an order of their own, in which products use them. The last stage of
+//! radix R writes blocks of R bins. The bins py - k of a block are again a block, in reverse order, and have the same values of S. Only one of these
+//! two blocks is stored.
 
 use std::sync::Arc;
 
@@ -12,26 +13,28 @@ use crate::fft::stage_plan::Stages;
 use crate::plan::{find, shared, Plan, PLAN};
 use crate::real::Scalar;
 
-/// The stages of one length, and the order of S.
+/// The stages of one length, and the order of S after them. A stored row of S, with one value for each column of a block, is called a kept row.
 pub struct EvenPlan<T: Scalar> {
     pub(crate) stages: Stages<T>,
-    /// The rows of S for each block of the last stage.
+    /// For each block of the last stage, the kept rows that have its values of S.
     pub(crate) kept: Vec<Kept>,
-    /// The bin of each kept row, at most py/2.
+    /// The bin k of each kept row, 0 ..= py/2.
     pub(crate) bins: Vec<usize>,
-    /// Whether the row comes from the mirror image, the bin py - k.
+    /// For each kept row, whether the stages leave bin py - k in its place instead of bin k.
     pub(crate) mirrored: Vec<bool>,
 }
 
-/// The kept rows of a block: the first, and the step to the next.
+/// The kept rows of one block of the last stage.
 #[derive(Clone, Copy)]
 pub struct Kept {
+    /// The kept row of the block's first bin.
     pub first: usize,
+    /// The step to the kept row of the next bin: 1 if the block itself is stored, -1 if its mirror image is.
     pub step: isize,
 }
 
 impl<T: Scalar> EvenPlan<T> {
-    /// The shared plan of a length; None if the length has no stages.
+    /// The shared plan of a length. None if the length has no stages.
     pub fn shared(length: usize) -> Result<Option<Arc<EvenPlan<T>>>> {
         // A known plan is found without an allocation.
         match find(length) {
@@ -57,25 +60,27 @@ impl<T: Scalar> Plan for EvenPlan<T> {
     }
 }
 
-/// The kept rows of each block of the last stage, from the lowest bin of each block, and the bins of all kept rows.
+/// Chooses the kept rows, from the lowest bin of each block of the last stage and its radix `last`. Returns the kept rows of each block, and the bin
+/// of each kept row.
 fn kept_rows(lowest: &[usize], last: usize) -> Result<(Vec<Kept>, Vec<usize>)> {
     let blocks = lowest.len();
-    let (mut block_of, mut bins) = (zeros(blocks, PLAN)?, Vec::new());
+    // The first kept row of the stored block with a given lowest bin.
+    let (mut first_row_of, mut bins) = (zeros(blocks, PLAN)?, Vec::new());
     reserve(&mut bins, (blocks / 2 + 1) * last, PLAN)?;
     let is_kept = |bin: usize| 2 * bin <= blocks;
     for &bin in lowest.iter().filter(|&&bin| is_kept(bin)) {
-        block_of[bin] = bins.len();
+        first_row_of[bin] = bins.len();
         bins.extend((0..last).map(|q| bin + q * blocks));
     }
     let kept = lowest.iter().map(|&bin| match is_kept(bin) {
-        true => Kept { first: block_of[bin], step: 1 },
-        false => Kept { first: block_of[blocks - bin] + last - 1, step: -1 },
+        true => Kept { first: first_row_of[bin], step: 1 },
+        false => Kept { first: first_row_of[blocks - bin] + last - 1, step: -1 },
     });
     Ok((collected(kept, PLAN)?, bins))
 }
 
 impl Kept {
-    /// The kept row of value q of the block.
+    /// The kept row of the block's bin number q.
     #[inline(always)]
     pub fn row(&self, q: usize) -> usize {
         self.first.wrapping_add_signed(self.step * q as isize)

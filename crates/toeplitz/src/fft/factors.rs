@@ -1,4 +1,5 @@
-//! The symbols by which a block of columns is multiplied, other than an even one of one component.
+//! The kinds of symbols that multiply a block of columns, except the even symbol of one component
+//! ([`EvenSymbol`](crate::fft::column_pass::EvenSymbol)).
 
 use pulp::Simd;
 
@@ -7,7 +8,7 @@ use crate::fft::column_pass::{even_value, At, Factor};
 use crate::fft::lanes::{lane_count, Arithmetic, Parts, C};
 use crate::real::Scalar;
 
-/// xx, yy and xy of a block of columns, `[kept row][column]`.
+/// The real symbol of two components: xx, yy and xy in a block of columns, each `[kept row][column]`.
 pub struct RealMatrix<'a, T>(pub [&'a [T]; 3]);
 
 impl<T: Scalar> Factor<T, 2> for RealMatrix<'_, T> {
@@ -17,7 +18,7 @@ impl<T: Scalar> Factor<T, 2> for RealMatrix<'_, T> {
         let (xx, yy, xy) = (even_value::<T, S>(xx, at), even_value::<T, S>(yy, at), even_value::<T, S>(xy, at));
         let (by_x, by_y) = (a.scale(x, xy), a.scale(y, xy));
         let (x, y) = (a.scale(x, xx), a.scale(y, yy));
-        // Mirror images of kept blocks have -xy.
+        // xy is odd: the mirror image of a kept block has -xy.
         if at.kept.step > 0 {
             [a.add(x, by_y), a.add(y, by_x)]
         } else {
@@ -26,25 +27,27 @@ impl<T: Scalar> Factor<T, 2> for RealMatrix<'_, T> {
     }
 }
 
-/// A symbol, and a complex factor for each of its columns: `[real or imaginary part][column]`.
+/// A symbol times a complex factor for each column, for displacements further on in x.
 pub struct Displaced<'a, T, F> {
-    pub of: F,
+    /// The symbol.
+    pub symbol: F,
+    /// The factors, `[real or imaginary part][column]`.
     pub factors: &'a [T],
 }
 
 impl<T: Scalar, F: Factor<T, K>, const K: usize> Factor<T, K> for Displaced<'_, T, F> {
     #[inline(always)]
     fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, x: [C<T, S>; K]) -> [C<T, S>; K] {
-        let by = complex_value::<T, S>(self.factors, 0, at.vector);
-        let mut values = self.of.times(a, at, x);
+        let factor = complex_value::<T, S>(self.factors, 0, at.vector);
+        let mut values = self.symbol.times(a, at, x);
         for value in &mut values {
-            *value = a.mul(*value, by);
+            *value = a.mul(*value, factor);
         }
         values
     }
 }
 
-/// Complex values of a block of columns, `[row][real or imaginary part][column]`.
+/// The complex symbol of one component in a block of columns, `[row][real or imaginary part][column]`.
 pub struct ComplexSymbol<'a, T>(pub &'a [T]);
 
 impl<T: Scalar> Factor<T, 1> for ComplexSymbol<'_, T> {
@@ -54,7 +57,7 @@ impl<T: Scalar> Factor<T, 1> for ComplexSymbol<'_, T> {
     }
 }
 
-/// Complex values of xx, yy and xy of a block of columns.
+/// The complex symbol of two components: xx, yy and xy in a block of columns, each `[row][real or imaginary part][column]`.
 pub struct ComplexMatrix<'a, T>(pub [&'a [T]; 3]);
 
 impl<T: Scalar> Factor<T, 2> for ComplexMatrix<'_, T> {
@@ -67,7 +70,7 @@ impl<T: Scalar> Factor<T, 2> for ComplexMatrix<'_, T> {
     }
 }
 
-/// Vector number `vector` of the columns in a row of complex values, `[row][real or imaginary part][column]`.
+/// The complex values `[row][real or imaginary part][column]` in one row, for vector number `vector` of the columns.
 #[inline(always)]
 fn complex_value<T: Scalar, S: Simd>(values: &[T], row: usize, vector: usize) -> C<T, S> {
     let per_part = BLOCK / lane_count::<T, S>();

@@ -1,6 +1,8 @@
-//! Passes between rows in memory and rows in lanes: values, four columns at a time, and bins of real rows
-//! ([`lane_rows`](crate::fft::lane_rows) has the formulas). Blocks of bins are far from each other, so each is prefetched during the work
-//! on the one before.
+//! Passes that copy real rows and their bins between memory and the lanes of vectors. [`lane_rows`](crate::fft::lane_rows) has the formulas and the
+//! layout of bins.
+//!
+//! Values are transposed four columns at a time. Blocks of bins are far from each other in memory, so the next one is prefetched during the work on
+//! each.
 
 use pulp::Simd;
 
@@ -10,12 +12,12 @@ use crate::fft::row_plan::RowPlan;
 use crate::fft::stages::{inlined, Row};
 use crate::real::{Complex, Scalar};
 
-/// Lanes of the longest vector.
+/// The number of lanes of the longest vector.
 const MOST_LANES: usize = BLOCK;
-/// Columns that are transposed together.
+/// The number of columns that are transposed together.
 const FOUR: usize = 4;
 
-/// Four values of each row, `values(row)`, as four vectors.
+/// Transposes four values of each row, which `values(row)` returns, to four vectors with one row in each lane.
 #[inline(always)]
 fn from_rows<T: Scalar, S: Simd>(simd: S, values: impl Fn(usize) -> [T; FOUR]) -> [T::Vector<S>; FOUR] {
     let (n, mut rows) = (lane_count::<T, S>(), [[T::zero(); FOUR]; MOST_LANES]);
@@ -26,7 +28,7 @@ fn from_rows<T: Scalar, S: Simd>(simd: S, values: impl Fn(usize) -> [T; FOUR]) -
     T::from_rows(simd, [v[0], v[1], v[2], v[3]])
 }
 
-/// The reverse of [`from_rows`]: calls `write(row, values)`.
+/// The reverse of [`from_rows`]: calls `write(row, values)` with the four values of each row.
 #[inline(always)]
 fn to_rows<T: Scalar, S: Simd>(simd: S, vectors: [T::Vector<S>; FOUR], mut write: impl FnMut(usize, [T; FOUR])) {
     let (n, mut rows) = (lane_count::<T, S>(), [[T::zero(); FOUR]; MOST_LANES]);
@@ -36,10 +38,10 @@ fn to_rows<T: Scalar, S: Simd>(simd: S, vectors: [T::Vector<S>; FOUR], mut write
     }
 }
 
-/// Groups of four real parts of a row in a block; there are as many of imaginary parts.
+/// The number of groups of four bins in a block. A row of a block has the real parts of all groups, then the imaginary parts.
 const PER_BLOCK: usize = BLOCK / FOUR;
 
-/// Loads z of rows. z is zero beyond them.
+/// Loads rows of `width` values as complex numbers z, one row in each lane. z is zero beyond the width. Lanes without a row repeat the last one.
 #[inline(always)]
 pub(crate) fn load<T: Scalar, S: Simd>(a: Arithmetic<T, S>, rows: &[T], width: usize, z: &mut [Row<T, S>]) {
     let count = rows.len() / width;
@@ -75,7 +77,7 @@ pub(crate) fn load<T: Scalar, S: Simd>(a: Arithmetic<T, S>, rows: &[T], width: u
     }
 }
 
-/// Stores X of all bins, from Z in the order of the stages.
+/// Computes all bins X of the rows from Z, which is in the order of the stages, and stores them.
 #[inline(always)]
 pub(crate) fn store_bins<T: Scalar, S: Simd>(
     a: Arithmetic<T, S>,
@@ -91,10 +93,10 @@ pub(crate) fn store_bins<T: Scalar, S: Simd>(
             let ([re, im], [mirrored_re, mirrored_im]) = (z[row_of[k]], z[row_of[h - k]]);
             let sum = Parts { re: a.add_real(re, mirrored_re), im: a.add_real(im, mirrored_im) };
             let difference = Parts { re: a.sub_real(re, mirrored_re), im: a.sub_real(im, mirrored_im) };
-            // -i w (difference.re + i sum.im)
-            let turned = a.twiddle(Parts { re: sum.im, im: difference.re }, conjugate(twiddles[k]));
+            // The conjugate of `-i w_k (Z_k - Z*_(h-k))/2`, where `Z_k - Z*_(h-k) = difference.re + i sum.im`.
+            let twiddled = a.twiddle(Parts { re: sum.im, im: difference.re }, conjugate(twiddles[k]));
             let mean = a.scale(Parts { re: sum.re, im: difference.im }, half);
-            Parts { re: a.add_real(mean.re, turned.re), im: a.sub_real(mean.im, turned.im) }
+            Parts { re: a.add_real(mean.re, twiddled.re), im: a.sub_real(mean.im, twiddled.im) }
         },
     );
     for block in 0..plan.blocks() {
@@ -130,7 +132,8 @@ fn conjugate<T: Scalar>(w: Complex<T>) -> Complex<T> {
     Complex::new(w.re, -w.im)
 }
 
-/// Loads Z of all bins in the order of the stages, with real and imaginary parts swapped. Bins are loaded from both ends, four at a time.
+/// Computes Z from the bins X, for the inverse transform: in the order of the stages, with real and imaginary parts swapped. The bins k and h - k are
+/// needed together, so bins are loaded from both ends, four at a time.
 #[inline(always)]
 pub(crate) fn load_bins<T: Scalar, S: Simd>(
     a: Arithmetic<T, S>,
@@ -171,15 +174,16 @@ pub(crate) fn load_bins<T: Scalar, S: Simd>(
         let ([re, im], [mirrored_re, mirrored_im]) = (front[k % FOUR], behind[m % FOUR]);
         let sum = Parts { re: a.add_real(re, mirrored_re), im: a.add_real(im, mirrored_im) };
         let difference = Parts { re: a.sub_real(re, mirrored_re), im: a.sub_real(im, mirrored_im) };
-        // w* (difference.re + i sum.im); i times this is added to Z_k. For Z_(h-k), w is -w*.
-        let turned = a.twiddle(Parts { re: difference.re, im: sum.im }, conjugate(twiddles[k]));
-        let turned = a.add(turned, turned);
-        z[row_of[k]] = [a.add_real(turned.re, difference.im), a.sub_real(sum.re, turned.im)];
-        z[row_of[m]] = [a.sub_real(turned.re, difference.im), a.add_real(sum.re, turned.im)];
+        // `w*_k (X_k - X*_(h-k))`, where `X_k - X*_(h-k) = difference.re + i sum.im`. Z_k contains i times this value. Z_(h-k) follows with
+        // `w_(h-k) = -w*_k`.
+        let twiddled = a.twiddle(Parts { re: difference.re, im: sum.im }, conjugate(twiddles[k]));
+        let twiddled = a.add(twiddled, twiddled);
+        z[row_of[k]] = [a.add_real(twiddled.re, difference.im), a.sub_real(sum.re, twiddled.im)];
+        z[row_of[m]] = [a.sub_real(twiddled.re, difference.im), a.add_real(sum.re, twiddled.im)];
     }
 }
 
-/// Stores the first values of z as rows. Real and imaginary parts of z are swapped.
+/// Stores the first `width` values of each row from z, whose real and imaginary parts are swapped.
 #[inline(always)]
 pub(crate) fn store<T: Scalar, S: Simd>(a: Arithmetic<T, S>, z: &[Row<T, S>], rows: &mut [T], width: usize) {
     let (whole, rest) = (width / FOUR, width % FOUR);
@@ -203,7 +207,7 @@ pub(crate) fn store<T: Scalar, S: Simd>(a: Arithmetic<T, S>, z: &[Row<T, S>], ro
             },
         );
     }
-    // Missing rows are empty.
+    // Lanes without a row have an empty slice.
     let mut fours: [&mut [[T; FOUR]]; MOST_LANES] = Default::default();
     for (row, fours) in rows.chunks_exact_mut(width).zip(&mut fours) {
         *fours = pulp::as_arrays_mut::<FOUR, _>(row).0;

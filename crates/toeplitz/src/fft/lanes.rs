@@ -1,6 +1,6 @@
-//! Values of several columns or rows in the lanes of SIMD vectors, and complex numbers of such vectors.
+//! SIMD vectors whose lanes hold values of several columns or rows, and complex numbers of such vectors.
 //!
-//! Multiplications and additions are not fused, so each lane has the bits of a scalar computation.
+//! Multiplications and additions are not fused, so the bits of each lane are those of a scalar computation.
 
 use std::marker::PhantomData;
 
@@ -8,16 +8,16 @@ use pulp::{bytemuck::Pod, Simd};
 
 use rustfft::num_complex::Complex;
 
-/// Values in the lanes of vectors.
+/// A real number that can be a lane of a vector.
 pub trait Lanes: Copy {
-    /// A vector of the instructions `S`.
+    /// A vector of such numbers, for the instruction set `S`.
     type Vector<S: Simd>: Pod;
 
-    /// A slice as vectors; its length is a multiple of theirs.
+    /// A slice as vectors. Its length is a multiple of the number of lanes.
     fn vectors<S: Simd>(values: &[Self]) -> &[Self::Vector<S>];
-    /// A mutable slice as vectors.
+    /// A mutable slice as vectors. Its length is a multiple of the number of lanes.
     fn vectors_mut<S: Simd>(values: &mut [Self]) -> &mut [Self::Vector<S>];
-    /// One value in all lanes.
+    /// A vector with the same value in all lanes.
     fn splat<S: Simd>(simd: S, value: Self) -> Self::Vector<S>;
     /// a + b.
     fn add<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
@@ -25,8 +25,8 @@ pub trait Lanes: Copy {
     fn sub<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
     /// a b, lane by lane.
     fn mul<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
-    /// Transposes. The input holds four consecutive values of each row. Vector k of the result holds value k of each row, in an order of lanes
-    /// chosen for the machine.
+    /// Transposes four vectors. They hold four consecutive values of each row, row after row. Vector k of the result holds value k of each row. The
+    /// machine determines which lane belongs to which row.
     fn from_rows<S: Simd>(simd: S, rows: [Self::Vector<S>; 4]) -> [Self::Vector<S>; 4];
     /// The reverse of [`Lanes::from_rows`].
     fn to_rows<S: Simd>(simd: S, vectors: [Self::Vector<S>; 4]) -> [Self::Vector<S>; 4];
@@ -75,13 +75,13 @@ macro_rules! lanes {
 lanes! { f32: f32s as_simd_f32s as_mut_simd_f32s splat_f32s add_f32s sub_f32s mul_f32s deinterleave_shfl_f32s interleave_shfl_f32s }
 lanes! { f64: f64s as_simd_f64s as_mut_simd_f64s splat_f64s add_f64s sub_f64s mul_f64s deinterleave_shfl_f64s interleave_shfl_f64s }
 
-/// Number of lanes of a vector.
+/// The number of lanes of a vector of T.
 #[inline(always)]
 pub fn lane_count<T: Lanes, S: Simd>() -> usize {
     size_of::<T::Vector<S>>() / size_of::<T>()
 }
 
-/// A vector of complex numbers: real and imaginary parts.
+/// A vector of complex numbers: the vector of real parts, and that of imaginary parts.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct Parts<V> {
@@ -89,7 +89,7 @@ pub struct Parts<V> {
     pub im: V,
 }
 
-/// Arithmetic of complex vectors.
+/// The arithmetic of complex vectors of T, with the instruction set `simd`.
 #[derive(Clone, Copy)]
 pub struct Arithmetic<T, S> {
     pub simd: S,
@@ -134,13 +134,13 @@ impl<T: Lanes, S: Simd> Arithmetic<T, S> {
         }
     }
 
-    /// Times real numbers, lane by lane.
+    /// a times real numbers, lane by lane.
     #[inline(always)]
     pub fn scale(self, a: C<T, S>, by: T::Vector<S>) -> C<T, S> {
         Parts { re: T::mul(self.simd, a.re, by), im: T::mul(self.simd, a.im, by) }
     }
 
-    /// Times one complex number.
+    /// a times the complex number w, which is the same for all lanes.
     #[inline(always)]
     pub fn twiddle(self, a: C<T, S>, w: Complex<T>) -> C<T, S> {
         let (re, im) = (T::splat(self.simd, w.re), T::splat(self.simd, w.im));
@@ -151,24 +151,24 @@ impl<T: Lanes, S: Simd> Arithmetic<T, S> {
         }
     }
 
-    /// a + b of real numbers.
+    /// a + b of vectors of real numbers.
     #[inline(always)]
     pub fn add_real(self, a: T::Vector<S>, b: T::Vector<S>) -> T::Vector<S> {
         T::add(self.simd, a, b)
     }
 
-    /// a - b of real numbers.
+    /// a - b of vectors of real numbers.
     #[inline(always)]
     pub fn sub_real(self, a: T::Vector<S>, b: T::Vector<S>) -> T::Vector<S> {
         T::sub(self.simd, a, b)
     }
 
-    /// One real number in all lanes.
+    /// A vector with the same real number in all lanes.
     #[inline(always)]
     pub fn splat(self, value: T) -> T::Vector<S> {
         T::splat(self.simd, value)
     }
 }
 
-/// A vector of complex numbers of `T`.
+/// A vector of complex numbers whose parts are of type `T`.
 pub type C<T, S> = Parts<<T as Lanes>::Vector<S>>;

@@ -1,4 +1,5 @@
-//! Transforms of rows and columns: any length by rustfft, fast lengths by stages of this crate, one row or column in each SIMD lane.
+//! Fourier transforms of rows and columns. Any length is transformed by rustfft. Lengths `2^a 3^b 5^c` also have stages of this crate, which
+//! transform one row or column in each SIMD lane.
 
 pub(crate) mod any_length;
 pub(crate) mod butterflies;

@@ -1,4 +1,4 @@
-//! The passes of [`LaneRows`](crate::fft::lane_rows::LaneRows).
+//! The transforms of [`LaneRows`](crate::fft::lane_rows::LaneRows): of one group of rows to bins, and back.
 
 use pulp::{Simd, WithSimd};
 
@@ -10,7 +10,7 @@ use crate::fft::stage_plan::Stages;
 use crate::fft::stages::{backwards, end, forward, of_radix, rows_of};
 use crate::real::{Complex, Scalar};
 
-/// Lanes of this machine's vectors; none if vectors are longer than a block.
+/// The number of lanes of this machine's vectors of T. None if vectors have more lanes than a block has columns.
 pub struct LaneCount<T>(pub std::marker::PhantomData<T>);
 
 impl<T: Scalar> WithSimd for LaneCount<T> {
@@ -22,17 +22,18 @@ impl<T: Scalar> WithSimd for LaneCount<T> {
     }
 }
 
-/// Whether a block is that of all bins of a group of rows.
+/// Whether `bins` has the size of all bins of one group of rows.
 fn fits<T: Scalar, S: Simd>(plan: &RowPlan<T>, bins: &Block<'_, T>) -> bool {
     bins.rows() == plan.blocks() && bins.columns() == lane_count::<T, S>() * BLOCK
 }
 
-/// Rows to bins: up to as many rows of `width` values as a vector has lanes, to bins `[block][row of these][part][bin]`, which always have room
-/// for that many rows. Shorter rows are padded with zeros.
+/// Transforms a group of rows to bins. A group has at most as many rows as a vector has lanes.
 pub struct Forward<'a, 'b, T: Scalar> {
     pub plan: &'a RowPlan<T>,
+    /// The rows, each of `width` values. They are padded with zeros to the length of the plan.
     pub rows: &'a [T],
     pub width: usize,
+    /// The bins, `[block][row of the group][part][bin]`. There is always room for as many rows as a vector has lanes.
     pub bins: &'a mut Block<'b, T>,
     pub scratch: &'a mut [Complex<T>],
 }
@@ -54,10 +55,12 @@ impl<T: Scalar> WithSimd for Forward<'_, '_, T> {
     }
 }
 
-/// Bins to rows: those of as many rows as a vector has lanes, to the first `width` values of the given rows.
+/// Transforms bins back to a group of rows.
 pub struct Inverse<'a, 'b, T: Scalar> {
     pub plan: &'a RowPlan<T>,
+    /// The bins of as many rows as a vector has lanes, `[block][row of the group][part][bin]`.
     pub bins: &'a Block<'b, T>,
+    /// The rows. Only their first `width` values are computed, and only as many rows as this slice has.
     pub rows: &'a mut [T],
     pub width: usize,
     pub scratch: &'a mut [Complex<T>],

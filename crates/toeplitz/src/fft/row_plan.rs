@@ -1,4 +1,5 @@
-//! The order of the bins of real rows of length n after the stages, which transform them as h = n/2 complex numbers.
+//! The plan of the transforms of real rows of length n. The stages transform a row as h = n/2 complex numbers Z
+//! ([`lane_rows`](crate::fft::lane_rows) has the formulas).
 
 use std::sync::Arc;
 
@@ -10,12 +11,13 @@ use crate::fft::stage_plan::Stages;
 use crate::plan::{find, shared, Plan, PLAN};
 use crate::real::{twiddle, Complex, Scalar};
 
-/// The stages of one length, and the rows of the bins after them.
+/// The stages of one length, and the order in which they leave the bins.
 pub struct RowPlan<T: Scalar> {
+    /// The stages of the complex transform of length h.
     pub(crate) stages: Stages<T>,
-    /// The row in which the stages leave each bin 0 .. h (Z_h = Z_0).
+    /// Where the stages leave the bins: Z_k is value `row_of[k]` of their output, for k = 0 ..= h, with Z_h = Z_0.
     pub(crate) row_of: Vec<usize>,
-    /// `w_k/2`, k = 0 .. h.
+    /// `w_k/2` for k = 0 ..= h, with `w_k = exp(-2 pi i k/n)`.
     pub(crate) twiddles: Vec<Complex<T>>,
 }
 
@@ -26,7 +28,7 @@ impl<T: Scalar> Plan for RowPlan<T> {
 }
 
 impl<T: Scalar> RowPlan<T> {
-    /// The shared plan of a length; None if n is odd, or h has no stages.
+    /// The shared plan of rows of length n. None if n is odd, or if h has no stages.
     pub fn shared(n: usize) -> Result<Option<Arc<RowPlan<T>>>> {
         // A known plan is found without an allocation.
         match find(n) {
@@ -52,7 +54,7 @@ impl<T: Scalar> RowPlan<T> {
         self.row_of.len() - 1
     }
 
-    /// Number of blocks of bins; bins beyond h are undefined.
+    /// The number of blocks of bins. The last block may have bins beyond h, which are undefined.
     pub(crate) fn blocks(&self) -> usize {
         (self.length() + 1).div_ceil(BLOCK)
     }

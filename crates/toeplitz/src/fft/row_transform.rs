@@ -1,4 +1,4 @@
-//! Transforms of real rows. An even length n takes a complex transform of length n/2 (Cooley, Lewis and Welch 1970).
+//! Transforms of real rows x of length n to complex bins X. If n is even, a complex transform of length n/2 is used (Cooley, Lewis and Welch 1970):
 //!
 //! ```text
 //! z_j = x_2j + i x_(2j+1),   Z = F z,   w_k = exp(-2 pi i k/n)
@@ -6,9 +6,8 @@
 //! X_(n/2-k)*  = (Z_k + Z*_(n/2-k))/2 + i w_k (Z_k - Z*_(n/2-k))/2
 //! ```
 //!
-//! The inverse solves these equations for 2 Z. The pass after (or before) the complex transform takes half as long as the transform, so it is
-//! compiled for the vectors of this machine. No bit depends on them. The operations and their order are those of the crate realfft; a test compares
-//! all bits.
+//! The inverse solves these equations for 2 Z. The pass between Z and X takes half as long as the complex transform, so pulp compiles it for the
+//! vectors of this machine. No bit depends on these vectors. The operations and their order are those of the crate realfft; a test compares all bits.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -21,21 +20,23 @@ use crate::real::Complex;
 use par::memory::collected;
 use par::Result;
 
-/// The longest short row, and the number of short rows transformed together.
+/// Rows of at most this length are short.
 const LONGEST_SHORT: usize = 256;
+/// The number of short rows that are transformed together.
 const MOST_ROWS: usize = 8;
 
-/// Transforms of real rows of one length `n` to `n/2 + 1` complex bins and back (unnormalised).
+/// Transforms of real rows of one length `n` to `n/2 + 1` complex bins and back. Both are unnormalised: a row transformed there and back is n times
+/// itself.
 #[derive(Clone)]
 pub struct RowTransform<T: Real> {
     n: usize,
-    /// The complex transform, of length n/2, or n if n is odd.
+    /// The complex transform, of length n/2, or of length n if n is odd.
     complex: ColumnTransform<T>,
-    /// `w_k/2`, 0 < k < n/4.
+    /// `w_k/2` for 0 < k < n/4; none if n is odd.
     twiddles: Arc<Twiddles<T>>,
 }
 
-/// The twiddles of a length.
+/// The twiddles of rows of one length.
 struct Twiddles<T: Real>(Vec<Complex<T>>);
 
 impl<T: Real> Plan for Twiddles<T> {
@@ -45,7 +46,7 @@ impl<T: Real> Plan for Twiddles<T> {
 }
 
 impl<T: Real> RowTransform<T> {
-    /// Plans for rows of length `n`.
+    /// Makes the plans for rows of length `n`.
     pub fn new(n: usize) -> Result<RowTransform<T>> {
         let is_even = n % 2 == 0;
         let twiddle = |k: usize| {
@@ -57,18 +58,19 @@ impl<T: Real> RowTransform<T> {
         Ok(RowTransform { n, complex: ColumnTransform::new(if is_even { n / 2 } else { n })?, twiddles })
     }
 
-    /// Length of a real row.
+    /// The length of a real row.
     pub fn length(&self) -> usize {
         self.n
     }
 
-    /// Number of complex bins.
+    /// The number of complex bins of a row.
     pub fn bins(&self) -> usize {
         self.n / 2 + 1
     }
 
-    /// Rows transformed together. For short rows, calling the complex transform takes as long as its work. Long rows are transformed out of
-    /// place, one after the other: together, their intermediate values would leave the nearest cache.
+    /// The number of rows that are transformed together. For short rows the call of the complex transform takes as long as its work, so one call
+    /// transforms several rows. Long rows are transformed out of place, one after the other: together, their intermediate values would not fit in the
+    /// first-level cache.
     pub fn at_a_time(&self) -> usize {
         if self.n > LONGEST_SHORT {
             1
@@ -77,29 +79,29 @@ impl<T: Real> RowTransform<T> {
         }
     }
 
-    /// Scratch for both directions.
+    /// Allocates the scratch of the transforms in both directions.
     pub fn scratch(&self) -> Result<Vec<Complex<T>>> {
         scratch_of(self.scratch_length())
     }
 
-    /// Makes scratch long enough.
+    /// Lengthens scratch to [`scratch_length`](Self::scratch_length), if it is shorter.
     pub fn fit(&self, scratch: &mut Vec<Complex<T>>) -> Result<()> {
         fit(scratch, self.scratch_length())
     }
 
-    /// The length of the scratch.
+    /// The length of the scratch that the transforms in both directions need.
     pub fn scratch_length(&self) -> usize {
-        let to_another_place = self.n % 2 == 0 && self.at_a_time() == 1;
-        let of_complex = if to_another_place { self.complex.scratch_to() } else { self.complex.scratch_length() };
+        let is_out_of_place = self.n % 2 == 0 && self.at_a_time() == 1;
+        let of_complex = if is_out_of_place { self.complex.scratch_to() } else { self.complex.scratch_length() };
         self.at_a_time() * self.complex.length() + of_complex
     }
 
-    /// Real row to bins. A shorter row is padded with zeros.
+    /// Transforms a real row to bins. A shorter row is padded with zeros.
     pub fn forward(&self, row: &[T], bins: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
         self.forward_together(row, row.len(), bins, scratch);
     }
 
-    /// Bins to the first values of a real row; the bins are overwritten.
+    /// Transforms bins back to the first values of a real row, as many as `row` has. The bins are overwritten.
     pub fn inverse(&self, bins: &mut [Complex<T>], row: &mut [T], scratch: &mut [Complex<T>]) {
         let width = row.len();
         self.inverse_together(bins, row, width, scratch);
@@ -181,8 +183,8 @@ impl<T: Real> RowTransform<T> {
     }
 }
 
-/// The pass over the bins of rows: turns the `length` bins of each row's complex transform into the bins of the row, or back. Compiled
-/// for the vectors of this machine.
+/// The pass over the bins of rows: converts the `length` bins Z of each row's complex transform to the bins X of the row, or X to 2 Z. pulp compiles
+/// it for the vectors of this machine.
 struct Passes<'a, T: Real, const FORWARD: bool> {
     twiddles: &'a [Complex<T>],
     length: usize,
@@ -192,7 +194,8 @@ struct Passes<'a, T: Real, const FORWARD: bool> {
 impl<T: Real, const FORWARD: bool> pulp::NullaryFnOnce for Passes<'_, T, FORWARD> {
     type Output = ();
 
-    // In place: the compiler does not vectorise over more slices, as it cannot prove that they do not overlap.
+    // The pass is in place. With separate input and output the compiler could not prove that the slices do not overlap, and would not vectorise the
+    // loop.
     #[inline(always)]
     fn call(self) {
         let Passes { twiddles, length, bins } = self;
@@ -208,11 +211,11 @@ impl<T: Real, const FORWARD: bool> pulp::NullaryFnOnce for Passes<'_, T, FORWARD
     }
 }
 
-/// Turns all bins k (in `a`) and n/2 - k (in `b`, in reverse order) except the outermost.
+/// Converts all bins k (in `a`) and n/2 - k (in `b`, in reverse order), except k = 0 and the bin in the middle.
 #[inline(always)]
 fn pass<T: Real, const FORWARD: bool>(w: &[Complex<T>], a: &mut [Complex<T>], b: &mut [Complex<T>]) {
     let (count, half) = (w.len(), T::one() / (T::one() + T::one()));
-    // One loop over slices of one length.
+    // Both slices have the length of `w`, so the compiler drops the checks of indices and vectorises the loop.
     let (a, b) = (&mut a[..count], &mut b[..count]);
     for k in 0..count {
         let (w, front, back) = (w[k], a[k], b[count - 1 - k]);

@@ -1,4 +1,4 @@
-//! The stages of a transform of one length, and the order of bins after them.
+//! The stages of a transform of one length, and the order in which they leave the bins.
 
 use par::memory::{collected, zeros};
 use par::Result;
@@ -10,20 +10,22 @@ use crate::lengths::radices;
 use crate::plan::PLAN;
 use crate::real::{twiddle, Scalar};
 
-/// Rows of a vector (16 kB with AVX2, 32 kB with AVX-512) that fit the nearest cache together with other data.
+/// The number of rows of complex vectors that fit in the first-level cache together with other data: 16 kB with AVX2, 32 kB with AVX-512.
 const NEAR_ROWS: usize = 256;
-/// Bytes of rows that fit the nearest cache without other data.
+/// The bytes of rows that fit in the first-level cache without other data.
 const NEAREST_CACHE: usize = 1 << 15;
 
-/// The stages of one length.
+/// The stages of one length ([`stages`](crate::fft::stages) has the formulas).
 pub(crate) struct Stages<T: Scalar> {
-    /// The first stage, and the middle ones.
+    /// The first stage.
     pub first: Stage<T>,
+    /// The stages between the first and the last.
     pub middle: Vec<Stage<T>>,
-    /// The number of middle stages that process all rows at once. The others process parts of `part` rows.
+    /// The number of middle stages that process all rows at once. The middle stages after them process parts of `part` rows.
     pub wide: usize,
+    /// The number of rows of a part, which fits in the first-level cache.
     pub part: usize,
-    /// The radix of the last stage.
+    /// The radix of the last stage, which has no twiddles.
     pub last: usize,
 }
 
@@ -33,7 +35,7 @@ impl<T: Scalar> Stages<T> {
         radices(length).is_some()
     }
 
-    /// The stages of a length that has some.
+    /// Makes the stages of a length, for which [`exist`](Self::exist) is true.
     pub fn new(length: usize) -> Result<Stages<T>> {
         let radices = radices(length).unwrap_or_default();
         let [first, middle @ .., last] = &radices[..] else { unreachable!("no stages have a length of {length}") };
@@ -51,24 +53,24 @@ impl<T: Scalar> Stages<T> {
         Ok(Stages { first, middle, wide, part, last: *last })
     }
 
-    /// Bytes held.
+    /// The bytes of the twiddles.
     pub fn bytes(&self) -> usize {
         std::iter::once(&self.first).chain(&self.middle).map(|stage| size_of_val(&stage.twiddles[..])).sum()
     }
 
-    /// The length.
+    /// The length of the transform.
     pub fn length(&self) -> usize {
         self.first.radix * self.first.stride()
     }
 
-    /// All forward stages except the first.
+    /// Applies all forward stages except the first to `rows`.
     #[inline(always)]
     pub fn forward_after_first<S: Simd>(&self, a: Arithmetic<T, S>, rows: &mut [Row<T, S>]) {
         let (wide, near) = self.middle.split_at(self.wide);
         for stage in wide {
             of_radix!(stage.radix, forward, a, stage, rows);
         }
-        // The remaining stages process part by part, in the nearest cache.
+        // The remaining stages process one part after the other, each in the first-level cache.
         for rows in rows.chunks_exact_mut(self.part) {
             for stage in near {
                 of_radix!(stage.radix, forward, a, stage, rows);
@@ -77,24 +79,25 @@ impl<T: Scalar> Stages<T> {
         }
     }
 
-    /// The lowest bin of each block of the last stage: block b holds bins `lowest(b) + q length/last`.
+    /// The lowest bin of each block of `last` rows: after the last stage, row q of block b holds the bin `lowest(b) + q length/last`.
     pub fn lowest_bins(&self) -> Result<Vec<usize>> {
         let blocks = self.length() / self.last;
-        // lowest(b) is b with its digits reversed: the stages before the last alone are a transform of length `blocks`, with this bin in row b.
+        // The stages before the last one are a transform of length `blocks`, which leaves bin lowest(b) in row b. So lowest(b) is b with its digits
+        // reversed, in the number system of the radices.
         let lowest = |b: usize| {
-            let (mut rest, mut below, mut bin, mut weight) = (b, blocks, 0, 1);
+            let (mut rest, mut place_value, mut bin, mut reversed_place_value) = (b, blocks, 0, 1);
             for stage in std::iter::once(&self.first).chain(&self.middle) {
-                below /= stage.radix;
-                bin += weight * (rest / below);
-                rest %= below;
-                weight *= stage.radix;
+                place_value /= stage.radix;
+                bin += reversed_place_value * (rest / place_value);
+                rest %= place_value;
+                reversed_place_value *= stage.radix;
             }
             bin
         };
         collected((0..blocks).map(lowest), PLAN)
     }
 
-    /// The bin of each row after the stages.
+    /// The bin that each row holds after the stages.
     pub fn bins(&self) -> Result<Vec<usize>> {
         let step = self.length() / self.last;
         let (lowest, mut bins) = (self.lowest_bins()?, zeros(self.length(), PLAN)?);
@@ -105,13 +108,14 @@ impl<T: Scalar> Stages<T> {
     }
 }
 
-/// The number of middle stages that process all rows, and the rows of a part in the stages after them. Parts fit the nearest cache. A length that
-/// fits as a whole is one part.
+/// The number of middle stages that process all rows, and the number of rows of a part in the stages after them. A part fits in the first-level
+/// cache. If all rows fit, they are one part. `after_first` is the stride of the first stage.
 fn near_parts<T: Scalar>(middle: &[Stage<T>], length: usize, after_first: usize) -> (usize, usize) {
     if length * bytes_of_a_row::<T>() <= NEAREST_CACHE {
         return (0, length);
     }
-    let after = |stages: usize| middle[..stages].last().map_or(after_first, Stage::stride);
-    let wide = (0..middle.len()).find(|&stages| after(stages) <= NEAR_ROWS).unwrap_or(middle.len());
-    (wide, after(wide))
+    // After a stage of stride m, each m consecutive rows are a transform of their own.
+    let part_after = |stages: usize| middle[..stages].last().map_or(after_first, Stage::stride);
+    let wide = (0..middle.len()).find(|&stages| part_after(stages) <= NEAR_ROWS).unwrap_or(middle.len());
+    (wide, part_after(wide))
 }

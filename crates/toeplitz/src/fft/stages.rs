@@ -1,4 +1,5 @@
-//! The stages of the transforms of several columns, or rows, at a time (Cooley and Tukey 1965).
+//! The stages of the transforms of several columns at a time, one in each SIMD lane (Cooley and Tukey 1965). Real rows are transformed likewise, one
+//! in each lane. Here a row is one complex value of all these columns.
 //!
 //! A stage of radix R cuts a transform of `n = R m` rows into R transforms of m rows, with `w = exp(-2 pi i/n)`:
 //!
@@ -7,10 +8,11 @@
 //! backwards   x_(j + k m) <- sum_q w^(q j) x_(j + q m) exp(-2 pi i q k/R)
 //! ```
 //!
-//! So transforms are in place, and the bins stay in the order in which the stages write them. The inverse is the
-//! transform with real and imaginary parts swapped before and after it.
+//! Transforms are in place, and the bins stay in the order in which the stages write them. The stages backwards take values in this order and
+//! leave bins in natural order. They apply the same transform, not its inverse. For the inverse, real and imaginary parts are swapped before and
+//! after it.
 //!
-//! Loops run over indices of slices that have one length; iterators take 3 to 7 % longer.
+//! Loops use indices of slices that have one length; iterators take 3 to 7 % longer.
 #![allow(clippy::needless_range_loop)]
 
 use std::marker::PhantomData;
@@ -23,36 +25,37 @@ use crate::fft::lanes::{lane_count, Arithmetic, Lanes, Parts, C};
 use crate::lengths::LONGEST;
 use crate::real::{Complex, Scalar};
 
-/// One row of a vector of columns: the real and the imaginary parts.
+/// One row of a vector of columns: the vector of real parts, and that of imaginary parts.
 pub(crate) type Row<T, S> = [<T as Lanes>::Vector<S>; 2];
 
-/// A stage of one radix.
+/// A stage of radix R.
 pub(crate) struct Stage<T: Scalar> {
+    /// R.
     pub radix: usize,
-    /// `w^(q j)` of q = 1 .. R - 1 for j = 0, the same for j = 1 ..
+    /// `w^(q j)`, as `[j][q]` with j = 0 .. m and q = 1 .. R.
     pub twiddles: Vec<Complex<T>>,
 }
 
 impl<T: Scalar> Stage<T> {
-    /// The stride m: the rows of each of the R transforms.
+    /// The stride m: the number of rows of each of the R transforms.
     pub fn stride(&self) -> usize {
         self.twiddles.len() / (self.radix - 1)
     }
 }
 
-/// The most complex numbers that memory can have before its first cache line.
+/// The largest number of complex values before the first start of a cache line in memory.
 pub(crate) const fn before_a_line<T>() -> usize {
     LINE / size_of::<Complex<T>>() - 1
 }
 
-/// Memory from its first cache line on. Vectors of 64 bytes that straddle two lines take twice as long.
+/// The part of memory from its first start of a cache line on. Access to a vector of 64 bytes that straddles two lines takes twice as long.
 #[inline(always)]
 pub(crate) fn from_a_line<T>(memory: &mut [Complex<T>]) -> &mut [Complex<T>] {
     let before = memory.as_ptr().align_offset(LINE).min(before_a_line::<T>());
     &mut memory[before..]
 }
 
-/// Memory as rows of vectors, from its first cache line on.
+/// Memory as rows of vectors, from its first start of a cache line on.
 #[inline(always)]
 pub(crate) fn rows_of<T: Scalar, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Row<T, S>] {
     let values = parts_mut(from_a_line(memory));
@@ -60,17 +63,18 @@ pub(crate) fn rows_of<T: Scalar, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Ro
     pulp::as_arrays_mut::<2, _>(T::vectors_mut::<S>(&mut values[..whole])).0
 }
 
-/// Returns a closure. As an argument a closure may have an attribute; elsewhere an expression may not.
+/// Returns its argument. A closure that is an argument may have the attribute `inline(always)`; one that is assigned may not.
 #[inline(always)]
 pub(crate) fn inlined<F>(closure: F) -> F {
     closure
 }
 
-/// Bytes of a row on this machine.
+/// The bytes of a row of vectors on this machine.
 pub(crate) fn bytes_of_a_row<T: Scalar>() -> usize {
     pulp::Arch::new().dispatch(BytesOfARow::<T>(PhantomData))
 }
 
+/// The work of [`bytes_of_a_row`], which needs the machine's instruction set.
 struct BytesOfARow<T>(PhantomData<T>);
 
 impl<T: Scalar> WithSimd for BytesOfARow<T> {
@@ -103,17 +107,19 @@ macro_rules! of_radix {
 }
 pub(crate) use of_radix;
 
+/// A row as a vector of complex numbers.
 #[inline(always)]
 pub(crate) fn get<T: Scalar, S: Simd>(row: &Row<T, S>) -> C<T, S> {
     Parts { re: row[0], im: row[1] }
 }
 
+/// Writes a vector of complex numbers to a row.
 #[inline(always)]
 pub(crate) fn put<T: Scalar, S: Simd>(row: &mut Row<T, S>, value: C<T, S>) {
     (row[0], row[1]) = (value.re, value.im);
 }
 
-/// Cuts rows into R parts of m rows.
+/// Cuts `R m` rows into R parts of m rows. The other parts of the result are empty.
 #[inline(always)]
 pub(crate) fn cut<A, const R: usize>(rows: &mut [A], m: usize) -> [&mut [A]; LONGEST] {
     let mut cut: [&mut [A]; LONGEST] = [&mut [], &mut [], &mut [], &mut [], &mut []];
@@ -125,7 +131,7 @@ pub(crate) fn cut<A, const R: usize>(rows: &mut [A], m: usize) -> [&mut [A]; LON
     cut
 }
 
-/// The first stage, of rows `load(row)`.
+/// Applies the first stage forward to rows that `load(row)` returns, and writes the result to `rows`.
 #[inline(always)]
 pub(crate) fn first<T: Scalar, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
@@ -149,7 +155,7 @@ pub(crate) fn first<T: Scalar, S: Simd, const R: usize>(
     }
 }
 
-/// A stage forward.
+/// Applies a stage forward to each `R m` rows, in place.
 #[inline(always)]
 pub(crate) fn forward<T: Scalar, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
@@ -174,8 +180,9 @@ pub(crate) fn forward<T: Scalar, S: Simd, const R: usize>(
     }
 }
 
-/// The last stage forward of K components, the product `product(block of R rows, q, values)`, and the first stage
-/// backwards.
+/// Applies the last stage forward to K components, multiplies the bins by a symbol, and applies the same stage backwards, all for one block of R rows
+/// after the other. `product(b, q, values)` returns the products of the values of all components in row q of block b. Between both stages real and
+/// imaginary parts are swapped, because the inverse transform follows.
 #[inline(always)]
 pub(crate) fn multiply<T: Scalar, S: Simd, const R: usize, const K: usize>(
     a: Arithmetic<T, S>,
@@ -211,7 +218,7 @@ pub(crate) fn multiply<T: Scalar, S: Simd, const R: usize, const K: usize>(
     }
 }
 
-/// The last stage forward.
+/// Applies the last stage forward to each R rows, in place. It has no twiddles, so it is also the first stage backwards.
 #[inline(always)]
 pub(crate) fn end<T: Scalar, S: Simd, const R: usize>(a: Arithmetic<T, S>, rows: &mut [Row<T, S>]) {
     for rows in rows.chunks_exact_mut(R) {
@@ -226,7 +233,7 @@ pub(crate) fn end<T: Scalar, S: Simd, const R: usize>(a: Arithmetic<T, S>, rows:
     }
 }
 
-/// Column j of the rows of a stage, backwards.
+/// The rows j, j + m, j + 2 m, ... of a stage backwards. `rows` has the R parts of m rows.
 #[inline(always)]
 fn column_backwards<T: Scalar, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
@@ -243,7 +250,7 @@ fn column_backwards<T: Scalar, S: Simd, const R: usize>(
     x
 }
 
-/// A stage backwards.
+/// Applies a stage backwards to each `R m` rows, in place.
 #[inline(always)]
 pub(crate) fn backwards<T: Scalar, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
@@ -262,7 +269,8 @@ pub(crate) fn backwards<T: Scalar, S: Simd, const R: usize>(
     }
 }
 
-/// The last stage backwards, to `store(row, value)`.
+/// Applies the last stage backwards, whose radix is that of the first stage forward. Swaps real and imaginary parts, and calls `store(row, value)`
+/// with the results.
 #[inline(always)]
 pub(crate) fn last<T: Scalar, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,

@@ -1,16 +1,16 @@
-//! Products of random bytes: the bytes become a grid, coefficients and values, and the product equals the sum term by term. Also the cargo-fuzz
-//! target `product` in fuzz/.
+//! Makes a grid, coefficients and values of random bytes, and compares their product with the sum term by term. The cargo-fuzz target `product` in
+//! fuzz/ uses this module, too.
 
 use par::threads::Threads;
 use toeplitz::coefficients::SYMMETRY;
 use toeplitz::{dense, Coefficients, Product, Real};
 
-/// Elements in one direction at most.
+/// The largest number of elements in one direction.
 const LONGEST: u64 = 40;
-/// Powers of two of the values, and of the coefficients, on either side of 1: single precision keeps their products.
+/// Values and coefficients are between about 2^-20 and 2^20, so that single precision has room for their products.
 const POWERS: u64 = 20;
 
-/// Bytes one after another, then zeros.
+/// Reads bytes one after another. Beyond their end it reads zeros.
 struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {
@@ -20,7 +20,7 @@ impl Bytes<'_> {
         u64::from(*first)
     }
 
-    /// A number up to `most`.
+    /// A whole number from 0 to `most`.
     fn up_to(&mut self, most: u64) -> u64 {
         (self.next() | self.next() << 8) % (most + 1)
     }
@@ -40,26 +40,26 @@ impl Bytes<'_> {
     }
 }
 
-/// A table of the coefficients of all offsets.
+/// A table of coefficients at all offsets on a grid.
 struct Table {
     grid: (i64, i64),
     values: Vec<f64>,
 }
 
 impl Table {
-    /// The coefficients of a symmetry `kind`: 0 even in both directions, 1 the same at k and -k, 2 none.
+    /// Reads coefficients with a symmetry `kind`: 0 even in both directions, 1 equal at k and -k, 2 none.
     fn read(bytes: &mut Bytes<'_>, grid: (usize, usize), kind: u64) -> Table {
         let (mx, my) = (grid.0 as i64, grid.1 as i64);
-        // Few bytes make many coefficients: offsets are hashed to 16 values.
+        // So that few bytes make many coefficients, each offset is hashed to one of 16 values.
         let drawn: Vec<f64> = (0..16).map(|_| bytes.value()).collect();
-        let mixed = |a: i64, b: i64| drawn[(a * 5 + b * 3).rem_euclid(16) as usize];
-        let of = |kx: i64, ky: i64| match kind {
-            0 => mixed(kx.abs(), ky.abs()),
-            1 if (ky, kx) < (0, 0) => mixed(-kx, -ky),
-            _ => mixed(kx, ky),
+        let hashed = |a: i64, b: i64| drawn[(a * 5 + b * 3).rem_euclid(16) as usize];
+        let value = |kx: i64, ky: i64| match kind {
+            0 => hashed(kx.abs(), ky.abs()),
+            1 if (ky, kx) < (0, 0) => hashed(-kx, -ky),
+            _ => hashed(kx, ky),
         };
         let values =
-            (1 - my..my).flat_map(|ky| (1 - mx..mx).map(move |kx| (kx, ky))).map(|(kx, ky)| of(kx, ky)).collect();
+            (1 - my..my).flat_map(|ky| (1 - mx..mx).map(move |kx| (kx, ky))).map(|(kx, ky)| value(kx, ky)).collect();
         Table { grid: (mx, my), values }
     }
 
@@ -88,10 +88,10 @@ impl Coefficients for Table {
     }
 }
 
-/// A product from bytes, in double or single precision, by one to three threads.
+/// Makes a product of bytes, in double or single precision and with one to three threads, and compares it with the sum term by term.
 ///
 /// # Panics
-/// If it is not the sum term by term.
+/// If the product differs from the sum by more than round-off.
 pub fn product(data: &[u8]) {
     let mut bytes = Bytes(data);
     let grid = (1 + bytes.up_to(LONGEST - 1) as usize, 1 + bytes.up_to(LONGEST - 1) as usize);
@@ -106,6 +106,8 @@ pub fn product(data: &[u8]) {
     }
 }
 
+/// Compares the product of a table and p with the sum term by term.
+///
 /// A transform keeps the norm of its values, and each of its steps rounds. No value of the symbol exceeds the sum of the coefficients' absolute
 /// values. So the norm of the error is at most this sum, times the norm of p, times a few roundings per step.
 fn compare<T: Real>(table: &Table, grid: (usize, usize), kind: u64, threads: &Threads, p: &[f64]) {

@@ -1,8 +1,8 @@
-//! Unit tests of transforms of any length.
+//! Transforms by rustfft: their bits depend on their length only.
 
 use super::*;
 
-/// The transform of some values on a thread of its own, which has planned other lengths before.
+/// Transforms n values on a new thread, which has planned the lengths `before` already.
 fn transformed<T: Real>(n: usize, before: &'static [usize]) -> Vec<Complex<T>> {
     let transform = move || {
         before.iter().for_each(|&length| drop(ColumnTransform::<T>::planned(length)));

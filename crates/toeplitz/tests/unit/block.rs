@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Rows of the matrices.
+/// The number of rows of the matrices.
 const ROWS: usize = 5;
 
 /// A matrix of zeros.

@@ -1,4 +1,4 @@
-//! Columns in lanes, compared with the transforms of another implementation, rustfft.
+//! Compares products of columns in lanes with those by another implementation of the transforms, rustfft.
 
 use std::ops::Range;
 
@@ -9,7 +9,8 @@ use crate::fft::column_pass::{Blocks, EvenSymbol, Multiply};
 use crate::fft::stages::before_a_line;
 use crate::real::Complex;
 
-/// The columns of a matrix of `my` rows, some of them loaded, multiplied by an even symbol: the largest error relative to the largest value.
+/// Multiplies the columns of a matrix of `my` rows by an even symbol. Only the rows `loaded` hold values. Returns the largest error relative to the
+/// largest value.
 fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) -> f64 {
     let even = LaneColumns::<T>::new(length).unwrap().expect("a plan");
     let value = |i: usize| T::of(((i * 7919 + length) % 1013) as f64 / 506.0 - 1.0);
@@ -29,7 +30,7 @@ fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) 
         expected.push(column);
     }
 
-    // As [block][row][part][column]. Columns beyond the last one do not belong to the result.
+    // The matrix as `[block][row][part][column]`. Columns beyond the last one are NaN: they must not influence the result.
     let (wide, kept) = (width.next_multiple_of(BLOCK), BLOCK * even.kept_rows());
     let mut spectrum = vec![T::nan(); wide / BLOCK * kept];
     for (b, block) in spectrum.chunks_exact_mut(kept).enumerate() {
@@ -63,7 +64,7 @@ fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) 
     difference / largest
 }
 
-/// Lengths of every radix at every place, some of them in parts.
+/// Lengths that have each radix as the first, a middle and the last one. Some are so long that their stages work in parts.
 const LENGTHS: [usize; 18] = [6, 8, 9, 10, 15, 16, 20, 25, 27, 32, 48, 50, 60, 120, 450, 1024, 2160, 4096];
 
 #[test]
@@ -73,7 +74,7 @@ fn columns_in_lanes_have_the_product_of_each() {
             for (my, loaded) in
                 [(length, 0..length), (length / 2 + 1, 0..length / 2), (length / 2 + 1, 1..2), (1, 0..1)]
             {
-                // Each of log2(length) steps rounds once or twice.
+                // Each of the log2(length) steps rounds once or twice.
                 let allowed = 2.0 * (length as f64).log2();
                 let (double, single) =
                     (error::<f64>(length, width, my, loaded.clone()), error::<f32>(length, width, my, loaded));
@@ -91,7 +92,7 @@ fn some_lengths_have_no_plan() {
     }
 }
 
-/// A block of columns, multiplied with an instruction set.
+/// Multiplies a block of columns with a given instruction set.
 #[cfg(target_arch = "x86_64")]
 fn by<T: Real>(arch: pulp::Arch, length: usize) -> Vec<Complex<T>> {
     let even = LaneColumns::<T>::on(arch, length).unwrap().expect("a plan");

@@ -1,11 +1,12 @@
-//! Rows in lanes, compared with the transforms of another implementation, realfft.
+//! Compares transforms of rows in lanes with those of another implementation, realfft.
 
 use super::*;
 use crate::block::parts;
 use crate::fft::row_pass::{Forward, Inverse};
 use realfft::RealFftPlanner;
 
-/// The largest errors of all bins of some rows and of the rows transformed back, relative to the largest value.
+/// Transforms a group of rows with `width` values each there and back; `missing` rows of the group are left out. Returns the largest error of the
+/// bins and of the rows transformed back, each relative to the largest value.
 fn errors<T: Real>(n: usize, width: usize, missing: usize) -> [f64; 2] {
     let lanes = LaneRows::<T>::new(n).unwrap().expect("a plan");
     let together = lanes.at_a_time();
@@ -49,7 +50,7 @@ fn rows_in_lanes_have_the_bins_of_each() {
     for n in [12usize, 16, 18, 20, 30, 32, 50, 54, 64, 100, 240, 432, 864, 900, 1024, 2160, 4096] {
         for width in [n, n - 1, n / 2, n / 2 + 1, n / 3, 5, 1] {
             for missing in [0, 1, 100] {
-                // Each of log2(n) steps rounds once or twice.
+                // Each of the log2(n) steps rounds once or twice.
                 let allowed = 2.0 * (n as f64).log2();
                 for error in errors::<f64>(n, width, missing) {
                     assert!(error <= allowed * f64::EPSILON, "{n}, {width} values, {missing} rows missing: {error}");
@@ -65,7 +66,7 @@ fn rows_in_lanes_have_the_bins_of_each() {
     }
 }
 
-/// The bins of 16 rows, and the rows transformed back, with an instruction set.
+/// Transforms 16 rows there and back with a given instruction set. Returns the bins, and the rows transformed back.
 #[cfg(target_arch = "x86_64")]
 fn by<T: Real>(arch: pulp::Arch, n: usize, width: usize) -> (Vec<Complex<T>>, Vec<T>) {
     let lanes = LaneRows::<T>::on(arch, n).unwrap().expect("a plan");

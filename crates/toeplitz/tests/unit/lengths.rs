@@ -1,4 +1,4 @@
-//! Lengths of transforms.
+//! The chosen lengths of transforms have the least work, and have plans.
 
 use super::*;
 

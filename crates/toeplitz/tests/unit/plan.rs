@@ -1,9 +1,11 @@
-//! Plans are shared, and the least recently used are dropped. The tests share one list, so each uses a separate type, and one runs at a time.
+//! Plans are shared, and the least recently used ones are removed. The tests share one list of plans. So each test uses a separate type, and the
+//! tests run one after the other.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::*;
 
+/// Waits until no other test uses the list of plans.
 fn alone() -> MutexGuard<'static, ()> {
     static ONE: Mutex<()> = Mutex::new(());
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
@@ -40,7 +42,7 @@ fn plans_beyond_the_bound_are_forgotten() {
         assert!(Arc::ptr_eq(&kept, &made(0)), "what is used stays");
         assert!(super::kept() <= most);
     }
-    // A plan larger than the limit is not kept, but its caller gets it.
+    // A plan that is larger than the limit is not kept, but its caller gets it.
     assert_eq!(shared(99, || Ok(Own::<1>(most + 1))).unwrap().0, most + 1);
     assert!(find::<Own<1>>(99).is_none());
 }

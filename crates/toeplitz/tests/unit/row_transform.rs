@@ -1,8 +1,9 @@
-//! Transforms of real rows have the same bits as those of realfft, at every length up to 70 and at lengths of products.
+//! Transforms of real rows have the same bits as those of the crate realfft, at every length up to 70 and at lengths that products use.
 
 use super::*;
 use realfft::{FftNum, RealFftPlanner};
 
+/// Compares the transform of a row of `given` values, padded to length n, and its inverse with those of realfft.
 fn compare<T: Real + FftNum>(n: usize, given: usize) {
     let ours = RowTransform::<T>::new(n).unwrap();
     let mut planner = RealFftPlanner::<T>::new();
@@ -32,6 +33,7 @@ fn a_row_has_the_bits_of_realfft() {
     }
 }
 
+/// Compares rows that are transformed together with each row alone.
 fn compare_together<T: Real>(n: usize, width: usize) {
     let transform = RowTransform::<T>::new(n).unwrap();
     let (nb, mut scratch) = (transform.bins(), transform.scratch().unwrap());

@@ -1,4 +1,4 @@
-//! The symbol of even coefficients, computed with rows and columns in lanes, compared with that computed one by one.
+//! Compares the symbol of even coefficients that is computed in lanes with that computed one row and column at a time.
 
 use super::*;
 use crate::fft::lane_columns::LaneColumns;
@@ -7,13 +7,13 @@ use crate::set_up::Transforms;
 const PERIODS: [(usize, usize); 9] =
     [(12, 16), (20, 27), (36, 45), (32, 18), (54, 30), (100, 240), (432, 36), (36, 1024), (48, 4096)];
 
-/// Coefficients up to a reach.
+/// Even coefficients at the offsets 0 ..= x and 0 ..= y.
 fn even((x, y): (usize, usize)) -> Even<impl Fn(i64, &mut [f64]) + Sync + Send, impl Fn(f64) -> f64 + Sync + Send> {
     let fill = |ky: i64, row: &mut [f64]| {
         let value = |kx: usize| 1.0 / (1.0 + (kx * kx) as f64 + 0.7 * (ky * ky) as f64).sqrt();
         row.iter_mut().enumerate().for_each(|(kx, c)| *c = value(kx));
     };
-    // A preconditioner tests each value of the symbol. So no value of columns beyond the last one may reach it.
+    // A preconditioner tests each value of the symbol, so it must not get values of columns beyond the last bin.
     let finish = |value: f64| {
         assert!(value.abs() > 1e-9, "a value of no column: {value}");
         1.0 + value
@@ -21,11 +21,12 @@ fn even((x, y): (usize, usize)) -> Even<impl Fn(i64, &mut [f64]) + Sync + Send, 
     Even { given: (x + 1, y + 1), fill, finish }
 }
 
+/// The largest offsets with coefficients, for tests of one period.
 fn reaches((px, py): (usize, usize)) -> [(usize, usize); 3] {
     [(px / 2, py / 2), (px / 3, py / 4), (0, 0)]
 }
 
-/// The symbol computed in lanes with an instruction set; None without vectors.
+/// Computes the symbol in lanes with a given instruction set. Returns None if it has no SIMD vectors.
 fn by_lanes<T: Real>(
     arch: pulp::Arch,
     period: (usize, usize),
@@ -58,7 +59,7 @@ fn a_spectrum_by_lanes_is_that_of_single_columns() {
                 columns.write(block, nb - first, |column, bin| single[(first + column) * half + bin]);
             }
             let largest = single.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-            // Each of log2(px py) steps rounds once or twice.
+            // Each of the log2(px py) steps rounds once or twice.
             let allowed = 2.0 * ((px * py) as f64).log2() * f64::EPSILON * largest;
             for (k, (value, expected)) in spectrum.iter().zip(&expected).enumerate() {
                 assert!((value - expected).abs() <= allowed, "{px} x {py}, {reach:?}, {k}: {value} {expected}");

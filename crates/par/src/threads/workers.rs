@@ -1,4 +1,5 @@
-//! The workers of a process, and the list of regions that they share. rayon lends the threads.
+//! The worker threads of a process, and the list of regions of work that callers offer to these workers ([`region`](super::region)). rayon starts the
+//! threads.
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -10,30 +11,33 @@ use super::region::Region;
 use super::signals;
 use crate::error::{OutOfMemory, Result};
 
-/// Prefix of the names of our threads.
+/// The prefix of the names of the worker threads.
 pub const THREAD_NAME: &str = "contact-normal-";
 
 thread_local! {
     static IS_WORKER: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Whether this thread is one of the pool. A thread may ask even while it ends, when its name is gone.
+/// Whether this thread is a worker. The answer is right even while the thread ends, when it has no name any more.
 pub fn is_worker() -> bool {
     IS_WORKER.get()
 }
 
-/// How long workers spin for more work before they sleep, and a caller for the end of the workers. A solve has hundreds of passes of 10 to
-/// 1000 us, with serial work between them, and waking a sleeping thread takes about 50 us.
+/// How long a worker spins for more work before it sleeps, and a caller for the end of the workers' pieces. A solve has hundreds of passes of 10 to
+/// 1000 us, with serial work between them. Waking a sleeping thread takes about 50 us.
 const AWAKE: Duration = Duration::from_micros(150);
 
-/// Bytes of a worker's stack, whatever RUST_MIN_STACK says.
+/// The bytes of a worker's stack. The environment variable RUST_MIN_STACK does not change them.
 const STACK: usize = 2 << 20;
 
-/// The workers of one process. In a forked child they do not exist.
-pub(super) struct Crew {
+/// The worker threads of one process. A forked child has this record, but not the threads.
+pub(super) struct Workers {
+    /// The id of the process that started the workers.
     pub process: u32,
     shared: Arc<Shared>,
-    lent: Mutex<Vec<rayon::ThreadPool>>,
+    /// The threads. Each call that needed more of them has added a pool of rayon.
+    pools: Mutex<Vec<rayon::ThreadPool>>,
+    /// Whether other programs use the cores.
     pub busy: Busy,
 }
 
@@ -41,59 +45,63 @@ pub(super) struct Crew {
 #[derive(Default)]
 struct Shared {
     regions: Mutex<Regions>,
-    /// The number of regions ever offered, which spinning workers watch.
+    /// The number of regions that have been offered so far. Spinning workers watch it.
     offered: AtomicUsize,
-    /// Workers that spin.
+    /// The number of workers that spin.
     awake: AtomicUsize,
+    /// Wakes sleeping workers: there is a region, or the workers shall end.
     is_offered: Condvar,
+    /// Whether the workers shall end.
     is_over: AtomicBool,
 }
 
-/// The open regions, under one lock for taking seats and closing.
+/// The regions that are offered. One lock protects the list while a worker takes a seat, and while a caller closes a region.
 #[derive(Default)]
 struct Regions {
     open: Vec<Arc<Region>>,
-    /// Workers that sleep.
+    /// The number of workers that sleep.
     asleep: usize,
 }
 
+/// Locks a mutex, also after a panic of another thread that held it.
 fn lock<A>(shared: &Mutex<A>) -> MutexGuard<'_, A> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Crew {
-    /// A crew without workers.
-    pub fn new() -> Crew {
+impl Workers {
+    /// The record of this process, without threads.
+    pub fn new() -> Workers {
         let process = std::process::id();
-        Crew { process, shared: Arc::default(), lent: Mutex::default(), busy: Busy::default() }
+        Workers { process, shared: Arc::default(), pools: Mutex::default(), busy: Busy::default() }
     }
 
-    /// The number of workers.
+    /// The number of worker threads.
     pub fn len(&self) -> usize {
-        lock(&self.lent).iter().map(|lent| lent.current_num_threads()).sum()
+        lock(&self.pools).iter().map(|pool| pool.current_num_threads()).sum()
     }
 
-    /// Starts workers up to this number.
-    pub fn grow_to(&self, workers: usize) -> Result<()> {
-        let mut lent = lock(&self.lent);
-        let known = lent.iter().map(|lent| lent.current_num_threads()).sum::<usize>();
-        if known >= workers {
+    /// Starts more worker threads, if there are fewer than `count`.
+    pub fn grow_to(&self, count: usize) -> Result<()> {
+        let mut pools = lock(&self.pools);
+        let present = pools.iter().map(|pool| pool.current_num_threads()).sum::<usize>();
+        if present >= count {
             return Ok(());
         }
-        let refused = |e| OutOfMemory(format!("threads is {}; the threads could not be started: {e}", workers + 1));
-        let builder = rayon::ThreadPoolBuilder::new().num_threads(workers - known).stack_size(STACK);
-        let builder =
-            builder.thread_name(move |i| format!("{THREAD_NAME}{}", known + i)).start_handler(|_| IS_WORKER.set(true));
+        let refused = |e| OutOfMemory(format!("threads is {}; the threads could not be started: {e}", count + 1));
+        let builder = rayon::ThreadPoolBuilder::new().num_threads(count - present).stack_size(STACK);
+        let name = move |i| format!("{THREAD_NAME}{}", present + i);
+        let builder = builder.thread_name(name).start_handler(|_| IS_WORKER.set(true));
         let more = signals::blocked(|| builder.build()).map_err(refused)?;
         let shared = self.shared.clone();
         more.spawn_broadcast(move |_| shared.work());
-        lent.push(more);
+        pools.push(more);
         Ok(())
     }
 
-    /// Calls `own` on the calling thread. Meanwhile free workers take the seats 0, 1, .. and call `work(seat)`, one worker a seat. Seats that
-    /// are free when `own` returns stay empty. Returns the result of `own`, and the time that the caller then waited.
-    pub fn beside<R>(&self, seats: usize, work: &(dyn Fn(usize) + Sync), own: impl FnOnce() -> R) -> (R, Duration) {
+    /// Calls `own` on the calling thread. Meanwhile free workers take the seats 0, 1, ... `seats - 1`, one worker a seat, and call `work(seat)`.
+    /// Seats that no worker has taken when `own` returns stay empty. Returns the result of `own`, and the time that the caller waited for workers
+    /// after `own`.
+    pub fn run_beside<R>(&self, seats: usize, work: &(dyn Fn(usize) + Sync), own: impl FnOnce() -> R) -> (R, Duration) {
         // SAFETY: `close` removes the region from the list in any case, and waits for its workers.
         let region = Arc::new(unsafe { Region::new(seats, work) });
         self.shared.open(&region, seats);
@@ -109,11 +117,13 @@ impl Crew {
     }
 }
 
-impl Drop for Crew {
+impl Drop for Workers {
     fn drop(&mut self) {
         if self.process != std::process::id() {
-            // The threads belong to another process, which may have held any lock: they are not signalled.
-            return std::mem::forget(std::mem::take(&mut *self.lent.get_mut().unwrap_or_else(PoisonError::into_inner)));
+            // The threads exist in the parent process only. It may have held any lock at the fork, so the pools are left as they are.
+            return std::mem::forget(std::mem::take(
+                &mut *self.pools.get_mut().unwrap_or_else(PoisonError::into_inner),
+            ));
         }
         self.shared.is_over.store(true, Ordering::Release);
         drop(lock(&self.shared.regions));
@@ -122,7 +132,7 @@ impl Drop for Crew {
 }
 
 impl Shared {
-    /// Offers a region to the spinning workers, and wakes others if these are too few.
+    /// Offers a region to the workers that spin. If they are fewer than its seats, wakes workers that sleep.
     fn open(&self, region: &Arc<Region>, seats: usize) {
         let mut regions = lock(&self.regions);
         regions.open.push(region.clone());
@@ -132,7 +142,7 @@ impl Shared {
         (0..to_wake).for_each(|_| self.is_offered.notify_one());
     }
 
-    /// The loop of a worker.
+    /// The loop of a worker: it waits for a region with a free seat, takes the seat and does its work, until the workers shall end.
     fn work(&self) {
         let mut seen = 0;
         while !self.is_over.load(Ordering::Acquire) {
@@ -156,7 +166,7 @@ impl Shared {
         }
     }
 
-    /// Spins until a new region is offered, at most for [`AWAKE`].
+    /// Spins until more regions than `seen` have been offered, at most for [`AWAKE`].
     fn spin(&self, seen: usize) {
         self.awake.fetch_add(1, Ordering::Relaxed);
         let began = Instant::now();
@@ -168,7 +178,7 @@ impl Shared {
     }
 }
 
-/// Removes a region from the list, and waits for workers that have begun, also when the caller's own part panics.
+/// When dropped, removes a region from the list and waits for the workers that have taken a seat. This also happens if the caller's own part panics.
 struct Close<'a>(&'a Shared, &'a Arc<Region>);
 
 impl Drop for Close<'_> {
