@@ -1,4 +1,5 @@
-//! Rough lines of long elements, as for line contacts: tractions displace the whole line nearly uniformly. Also bounds of any ratio on two elements.
+//! Rough lines of long elements, as for line contacts, on which each traction displaces the whole line nearly uniformly. Also steady rolling of two
+//! elements whose bounds have any ratio.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +11,7 @@ use contact_normal::solver::{self as normal, Options, Outcome};
 use super::steady::rolling;
 use super::support::{residual, solver};
 
-/// The round-off of two products by different sums.
+/// The difference that the round-off of direct sums and of FFT products may make in a residual.
 const ROUND_OFF: f64 = 1e-9;
 
 /// Pressures on a line of waves with random phases and amplitudes that fall as `k^-1.3`.
@@ -35,7 +36,7 @@ fn pressures(grid: &Grid, seed: u64) -> (Vec<f64>, f64) {
     (solved.state().p.clone(), largest)
 }
 
-/// Gradients and Newton's method cycle on most of these lines. The projected Newton method descends.
+/// The gradient method and Newton's method cycle on most of these lines. The projected Newton method, which only descends, solves them.
 #[test]
 fn shifts_of_rough_lines_are_solved_however_long_their_elements() {
     for (seed, dy) in [(1, 1e5), (2, 1e5), (3, 1e5), (4, 1e5), (5, 1e4), (6, 1e4), (7, 1e3)] {
@@ -53,7 +54,8 @@ fn shifts_of_rough_lines_are_solved_however_long_their_elements() {
     }
 }
 
-/// Bounds below the round-off of the largest one: their tractions are negligible, and their elements stick or slip by their slip.
+/// The smaller bound may be below the round-off of the larger one. Its traction is then negligible, and the element sticks or slips according to its
+/// slip.
 #[test]
 fn bounds_of_any_ratio_roll() {
     let grid = Grid::new(2, 1, 1.0, 1.0).unwrap();

@@ -1,13 +1,13 @@
-//! Unlike bodies with all or part of the contact at its pressure limit, or with a contact of one element: the normal conditions with the
-//! displacements by the tractions, by direct sums.
+//! Unlike bodies whose contact is partly or fully at the pressure limit, or has one element. The normal conditions, including displacements by
+//! tractions, are recomputed by direct sums.
 
 use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 use super::unlike::{ball, Sums, RIGID_ON_SOFT};
 
-/// The smallest tolerance for which the normal conditions of a solution hold, relative to the rms of `h - approach` in contact; the number of
-/// elements at their limit, and that in contact.
+/// Solves a scene. Returns the smallest tolerance for which the normal conditions hold, relative to the rms of `h - approach` in contact; the number
+/// of elements at their limit; and the number of elements in contact.
 fn left(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> (f64, usize, usize) {
     let (solver, stop, report) = solve(scene, &Options { tolerance, ..Options::default() }).unwrap();
     assert_eq!(stop, Outcome::Converged, "{:?}", scene.load);
@@ -58,7 +58,7 @@ fn elements_at_their_limit_are_moved_by_tractions() {
                     let plain = Scene::new(grid, &h, bodies, load);
                     let scene = Scene { friction: Some(friction), pressure_limit, ..plain };
                     let (left, limited, touching) = left(&sums, &scene, 1e-6);
-                    // Sums and transforms have different round-off.
+                    // .1 % of the tolerance allows for the different round-off of direct sums and FFT products.
                     assert!(left <= 1.001e-6, "{bodies:?} {motion:?} {limit} {load:?}: {left:e}");
                     full += usize::from(limited == touching);
                 }

@@ -58,7 +58,7 @@ fn coefficients(case: &Case, x: f64, y: f64) -> [f64; 3] {
     [(1.0 - case.nu) * a + b, a + (1.0 - case.nu) * b, case.nu * c]
 }
 
-/// Displacements by tractions, at distances `ahead` in x of the centres.
+/// Displacements caused by tractions q, at places that are `ahead` in x of the centres of elements.
 fn displace(case: &Case, q: &[Vector], ahead: f64) -> Vec<Vector> {
     let (mx, my) = (case.grid.mx as i64, case.grid.my as i64);
     let reach = |m: i64| 1 - m..m;
@@ -87,7 +87,7 @@ fn rigid_slip(case: &Case, motion: Motion, i: usize, creepage: Vector) -> Vector
     [distance * (creepage[0] - case.spin * y) + own[0], distance * (creepage[1] + case.spin * x) + own[1]]
 }
 
-/// The residual of the slip, relative, and its possible round-off.
+/// The rms residual of the slip relative to its scale, and the round-off that it may have.
 fn residual(case: &Case, motion: Motion, g: &[f64], q: &[Vector], creepage: Vector) -> (f64, f64) {
     let is_steady = motion == Motion::SteadyRolling;
     let given = |i: usize| case.previous.as_ref().map_or([0.0; 2], |before| [before[0][i], before[1][i]]);
@@ -114,14 +114,14 @@ fn residual(case: &Case, motion: Motion, g: &[f64], q: &[Vector], creepage: Vect
     let scale = match motion {
         Motion::Shift => rms(&rigid).max(rms(&displaced)),
         Motion::SteadyRolling if has_forces => rms(&rigid).max(rms(&displaced)),
-        // In slow rolling the scale is the round-off of the displacements.
+        // In slow rolling the rigid slip may be below the round-off of the displacements, which is then the scale.
         _ => rms(&rigid).max(f64::EPSILON.sqrt() * rms(&displaced)),
     };
     let part = |value: f64| if value == 0.0 { 0.0 } else { value / scale };
     (part(rms(&left)), part(ROUND_OFF * largest))
 }
 
-/// The first bound or force that does not hold, in words.
+/// Describes the first bound or prescribed force that does not hold. `None`: all of them hold.
 fn broken(case: &Case, g: &[f64], q: &[Vector]) -> Option<String> {
     if let Some(i) = (0..q.len()).find(|&i| !(length(q[i]) <= g[i])) {
         return Some(format!("element {i}: {:?} beyond {}", q[i], g[i]));
