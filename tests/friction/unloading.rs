@@ -62,8 +62,8 @@ fn tractions_relax_however_large_they_were() {
                 lost += s[0] * q[i][0] + s[1] * q[i][1] + bound * s[0].hypot(s[1]);
                 scale += bound * then[i][0].hypot(then[i][1]);
             }
-            // `lost` is relative to the displacements u' of the previous tractions. The tolerance is 1e-6, of a scale that in rolling is at least
-            // 1.5e-8 of u'.
+            // `scale` is the work of mu p over the displacements u' of the previous tractions. The tolerance is 1e-6 of a slip that in rolling is at
+            // least 1.5e-8 of u'.
             assert!(lost <= 1e-5 * scale, "{what}: {lost:e} of {scale:e}");
             assert!((0.0..=1e-4).contains(&gap), "{what}: gap {gap:e}");
             count += 1;
