@@ -216,8 +216,9 @@ fn errors_near_full_contact_of_two_periods_are_numbers_or_unknown() {
     }
 }
 
-/// Where an element gives way more than on a half-space, the rim has no bias, and the error of the corrected area is the whole correction. Three
-/// scenes: with a layer, with a thin coating that acts as this layer, and with a table of coefficients that has its compliance on the diagonal.
+/// Where an element gives way more than on a half-space, the rim has no bias, and the error of the corrected area is the whole correction. Besides a
+/// plain scene there are three of this kind: with a layer, with a thin coating that acts as this layer, and with a table of coefficients that has its
+/// compliance on the diagonal.
 #[test]
 fn corrected_areas_of_compliant_elements_have_the_error_of_the_correction() {
     let (thickness, modulus, ratio) = (0.01, 0.005, 0.3);

@@ -1,5 +1,5 @@
-//! Meaningless input is refused by every call that takes it: grids made without their check, tolerances and targets of 1 and more. Callbacks get numbers,
-//! never NaN.
+//! Meaningless input is refused by every call that takes it: invalid grids that were made without `Grid::new`, and tolerances and targets of 1 and
+//! more. Callbacks get numbers, never NaN.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -111,7 +111,7 @@ fn sweeps_that_overflow_are_refused() {
     names(options.check(), "both 0");
 }
 
-/// If h equals the approach on all of C, the scale of residuals is 0.
+/// If h equals the approach on all of C, residuals are relative to 0. The callback must still get numbers.
 #[test]
 fn a_callback_is_told_numbers() {
     let grid = Grid::new(9, 7, 1.0, 1.0).unwrap();
