@@ -92,7 +92,7 @@ fn beside_other_effects_steps_meet_the_conditions() {
         let period = Some(Period { x, y });
         assert_path("period", &Scene { period, ..plain.clone() }, both, &by_force, &options);
     }
-    // The caller's coefficients for both bodies together: the compliance is that of a body that relaxes in one way.
+    // A caller's table, 1.3 times the coefficients of the second body. It stands for both bodies together, and relaxes as the second one.
     let alone = Bodies { shear_modulus: [f64::INFINITY, G], ..BODIES };
     let kernel = Scene::new(grid(), &h, alone, Load::Approach(0.0)).coefficients().unwrap();
     let entry = |i: usize| kernel.at((i % (2 * MX)) as i64 - MX as i64, (i / (2 * MX)) as i64 - MY as i64);
