@@ -77,8 +77,8 @@ fn responses_have_their_limits() {
     }
 }
 
-/// `(mu, nu, t, (dx, dy), offset, Axx, Ayy, Axy)`, in 1/(pi G1) of both bodies: Hankel integrals of order 0 and 2 at 20 x 20 Gauss points of the element, in
-/// 25 digits (mpmath), and the half-space's closed forms.
+/// `(mu, nu, t, (dx, dy), offset, Axx, Ayy, Axy)`, in 1/(pi G1) of both bodies: Hankel integrals of order 0 and 2 at 20 x 20 Gauss points of the
+/// element, in 25 digits (mpmath), and the half-space's closed forms.
 type Digits = (f64, [f64; 2], f64, (f64, f64), (f64, f64), [f64; 3]);
 
 #[rustfmt::skip]

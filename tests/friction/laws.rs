@@ -104,8 +104,8 @@ pub fn off_by(number: f64, printed: f64) -> f64 {
     (number - printed).abs() / 10f64.powi(printed.abs().log10().floor() as i32 - 3)
 }
 
-/// All forces but one have the four printed digits, and that one differs by less than one unit of its last digit. The numbers of sticking elements are as
-/// printed.
+/// All forces but one have the four printed digits, and that one differs by less than one unit of its last digit. The numbers of sticking elements
+/// are as printed.
 #[test]
 fn a_creep_curve_with_falling_friction_is_that_of_contact() {
     let wheel = Wheel::new(1);

@@ -12,7 +12,8 @@ use contact_normal::solver::{solve, Options, Outcome};
 use contact_normal::threads::Threads;
 use contact_normal::visco::{rolling_table, RollingBody, Series};
 
-/// The integral of f from a to b by the double exponential rule, whose error is a few units of round-off even if the slope of f at the ends is infinite.
+/// The integral of f from a to b by the double exponential rule, whose error is a few units of round-off even if the slope of f at the ends is
+/// infinite.
 fn integral(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (half, step) = (0.5 * (b - a), 0.125);
     let term = |k: i32| {

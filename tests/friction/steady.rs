@@ -125,15 +125,15 @@ fn cases_of_an_earlier_program_are_met() {
                 Prescribed::Force(_) => report.creepage,
             };
             for (value, known) in computed.into_iter().zip(known_values) {
-                // The known values are those on 256 x 256 elements. Here there are 64 x 64, each 3 % of the half-axis, hence the tolerance of 2 %. The
-                // .004 are for components near 0.
+                // The known values are those on 256 x 256 elements. Here there are 64 x 64, each 3 % of the half-axis, hence the tolerance of 2 %.
+                // The .004 are for components near 0.
                 assert!((value - known).abs() <= 0.02 * known.abs() + 0.004, "{b} {}: {value} {known}", case.name);
             }
             if k % 4 == 0 {
                 check(&case.grid, &case.bound, &case.friction, (&report, &solution));
             }
-            // At most 10 % more products than the earlier program took to 1e-6 on 64 x 64 elements. The known counts are rounded (+ 0.5), and leave out
-            // the product of the certificate (+ 1).
+            // At most 10 % more products than the earlier program took to 1e-6 on 64 x 64 elements. The known counts are rounded (+ 0.5), and leave
+            // out the product of the certificate (+ 1).
             let most = 1.1 * (f64::from(known_products[1]) + 0.5) + 1.0;
             assert!(report.products <= most, "{b} {}: {}", case.name, report.products);
             products.push(report.products - 1.0);
@@ -179,8 +179,8 @@ fn steps_of_transient_rolling_lead_to_steady_rolling() {
     assert!(warm_report.products <= 12.0, "{}", warm_report.products);
 }
 
-/// Bentall and Johnson's (1967) aluminium cylinder on a steel one: CONTACT's example bentall, whose output has the creepages and the numbers of elements
-/// in stick and in contact.
+/// Bentall and Johnson's (1967) aluminium cylinder on a steel one: CONTACT's example bentall, whose output has the creepages and the numbers of
+/// elements in stick and in contact.
 #[test]
 fn unlike_cylinders_roll_as_contact_says() {
     let normal_force = 16201.9;
