@@ -22,7 +22,7 @@ fn bits_of_solves(h: &[f64], m: usize) -> Vec<u64> {
 }
 
 #[test]
-fn what_rests_between_its_uses_changes_no_bit() {
+fn arrays_that_rest_between_their_uses_change_no_bit() {
     // The contact is solved on a window, and on the whole grid.
     for reach in [0.3, 1.2] {
         let m = 80;

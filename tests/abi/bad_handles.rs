@@ -173,7 +173,7 @@ fn a_handle_with_a_table_needs_neither_the_table_again_nor_elastic_constants() {
 }
 
 #[test]
-fn a_handle_with_row_tables_needs_neither_them_again_nor_elastic_constants() {
+fn a_handle_with_row_tables_needs_neither_the_tables_again_nor_elastic_constants() {
     let mut call = Call::new();
     call.use_row_tables();
     call.scene.known.shear_modulus = [NAN; 2];

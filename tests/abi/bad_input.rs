@@ -37,7 +37,7 @@ fn a_stagnation_says_what_limits() {
 /// All elements in contact but one are at their limit. Displacements are 1e-12 of the heights, so that the height of the only free element decides
 /// what the message says.
 #[test]
-fn beside_elements_at_their_limit_it_says_so_too() {
+fn beside_elements_at_their_limit_a_stagnation_names_round_off() {
     let mut call = Call::new();
     call.h.iter_mut().enumerate().for_each(|(i, h)| *h = 0.1 + 0.7031 * i as f64);
     let scene = &mut call.scene.known;

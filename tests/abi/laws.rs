@@ -187,7 +187,7 @@ fn a_handle_carries_what_the_caller_would_hand_on() {
 
 /// With Coulomb's friction the members of a law, and the state of particles, are not read.
 #[test]
-fn without_a_law_what_goes_with_it_is_not_read() {
+fn without_a_law_its_members_are_not_read() {
     let mut call = Call::new();
     let bad = vec![f64::NAN; MX * MY];
     let friction = call.use_friction();

@@ -70,7 +70,7 @@ unsafe extern "C" fn set_stop(_: *const contact_normal_progress, user: *mut libc
 
 /// The bill of effects that `neglect_below` computes before the solve calls `progress` and reads `stop`, too.
 #[test]
-fn what_leaves_effects_out_asks_as_well() {
+fn the_bill_of_neglected_effects_calls_progress_and_reads_stop() {
     let told = |neglect_below: f64| {
         let mut grids = Vec::new();
         let mut call = Call::new();
@@ -106,7 +106,7 @@ unsafe extern "C" fn note_grid(told: *const contact_normal_progress, user: *mut 
 }
 
 #[test]
-fn it_is_looked_at_after_each_cycle() {
+fn the_stop_integer_is_read_after_each_cycle() {
     let (mut call, mut stop) = (long(), 0);
     call.options.known.user = (&raw mut stop).cast();
     call.options.known.stop = (&raw mut stop).cast_const();

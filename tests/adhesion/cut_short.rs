@@ -83,7 +83,7 @@ fn more_cycles_do_not_lose_the_state_of_a_pull() {
 /// A solve from given pressures starts at the approach of their contact, as the solve of a handle does from its own. So a replay of a dump follows
 /// the path of the recorded call.
 #[test]
-fn given_pressures_go_on_as_previous_ones_do() {
+fn given_pressures_follow_the_path_of_previous_pressures() {
     let sphere = Sphere::by_tabor(1.0, 48, 3.0);
     let (first, next) = (sphere.scene(Load::Force(-1.1)), sphere.scene(Load::Force(-1.2)));
     let mut solver = Solver::new(&first, &Options::default()).expect("a solver");

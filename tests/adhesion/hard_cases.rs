@@ -106,7 +106,7 @@ fn values_that_are_none_are_refused_by_name() {
 }
 
 #[test]
-fn it_can_be_cancelled_at_every_callback() {
+fn a_solve_with_adhesion_can_be_cancelled_at_every_callback() {
     let sphere = Sphere::by_tabor(1.0, 40, 3.0);
     for (start, load, pull_off) in [
         (Start::Auto, Load::Approach(0.3), false),

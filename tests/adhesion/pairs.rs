@@ -17,7 +17,7 @@ fn refusal(scene: &Scene<'_>, options: &Options) -> String {
 }
 
 #[test]
-fn effects_that_are_not_solved_with_it_are_refused_by_name() {
+fn effects_that_adhesion_excludes_are_refused_by_name() {
     let sphere = Sphere::by_tabor(1.0, 16, 3.0);
     let plain = sphere.scene(Load::Approach(0.5));
     let friction = Friction::new(0.3);

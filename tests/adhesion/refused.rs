@@ -94,7 +94,7 @@ fn other_coefficients_leave_the_split_of_the_pressures() {
 
 /// The stiffness that is computed without adhesion does not hold for a result with adhesion, so that the call is refused.
 #[test]
-fn the_stiffness_of_a_result_of_adhesion_comes_with_it() {
+fn the_stiffness_of_a_result_with_adhesion_is_in_its_report() {
     let sphere = Sphere::by_tabor(1.0, 24, 3.0);
     let scene = sphere.scene(Load::Approach(0.1));
     let mut solver = Solver::new(&scene, &Options::default()).expect("a solver");

@@ -150,7 +150,7 @@ fn a_fine_grid_takes_few_products_and_meets_the_conditions() {
 /// The rms residuals of a friction law by direct sums, for a shift from rest or for steady rolling along x by one element. Returns three numbers: the
 /// residual of the slip over C relative to the rigid slip; the rms of `|q| - g(slip)` relative to the bounds at rest; and the displacements of the
 /// step relative to the rigid slip.
-pub fn left(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64; 3] {
+pub fn residuals(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64; 3] {
     let (grid, law) = (&wheel.grid, friction.law.unwrap());
     let Coefficient::Uniform(layer) = friction.compliance else { panic!("one layer") };
     let (q, n) = (&solution.traction, grid.len());
@@ -215,7 +215,7 @@ fn all_laws_meet_their_conditions_by_direct_sums() {
                 let law = FrictionLaw { fall, memory_distance, falling, half_speed: [1250.0, 3000.0], ..RUNNING };
                 let friction = wheel.friction(xi, spin, Some(law));
                 let (end, report, solution) = wheel.ended(&friction, 1e-7);
-                let [slip, bound, _] = left(&wheel, &friction, &solution);
+                let [slip, bound, _] = residuals(&wheel, &friction, &solution);
                 println!(
                     "{fall:?} {memory_distance} {falling:?} {xi} {end:?} slope {:.2} products {} left {slip:.1e} {bound:.1e}",
                     report.law_slope, report.products

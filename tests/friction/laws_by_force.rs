@@ -4,7 +4,7 @@ use contact_normal::friction::{Report, Request, Solution};
 use contact_normal::scene::{Coefficient, Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous};
 use contact_normal::solver::Outcome;
 
-use super::laws::{left, solver, Wheel, FORCE, RUNNING};
+use super::laws::{residuals, solver, Wheel, FORCE, RUNNING};
 
 const TOLERANCE: f64 = 1e-7;
 
@@ -54,7 +54,7 @@ fn forces_below_the_maximum_give_the_creepages_back() {
                 assert!((q[0] - other[0]).hypot(q[1] - other[1]) <= 1e-4 * largest);
             }
             let as_found = Friction { prescribed: back.creepage.map(Prescribed::Creepage), ..friction };
-            let [slip, bound, displaced] = left(&wheel, &as_found, &found);
+            let [slip, bound, displaced] = residuals(&wheel, &as_found, &found);
             // With given forces the residual may be relative to the displacements. 1 % allows for the round-off of direct sums.
             let tolerance = 1.01 * TOLERANCE;
             assert!(slip <= tolerance * displaced.max(1.0) && bound <= tolerance, "{slip} {bound} {displaced}");

@@ -5,7 +5,7 @@ use contact_normal::friction::{Report, Solution, SLIP};
 use contact_normal::scene::{Branch, Coefficient, Fall, Friction, FrictionLaw, Motion};
 use contact_normal::solver::Outcome;
 
-use super::laws::{left, Wheel, RUNNING};
+use super::laws::{residuals, Wheel, RUNNING};
 
 const TOLERANCE: f64 = 1e-6;
 
@@ -39,7 +39,7 @@ fn is_solved(wheel: &Wheel, friction: &Friction<'_>, (end, report, found): &(Out
         assert!(report.certificate.residual >= TOLERANCE, "{friction:?} {report:?}");
         return false;
     }
-    let [slip, bound, _] = left(wheel, friction, found);
+    let [slip, bound, _] = residuals(wheel, friction, found);
     // 1 % of the tolerance allows for the round-off of direct sums.
     assert!(slip <= 1.01 * TOLERANCE && bound <= 1.01 * TOLERANCE, "{friction:?} {slip} {bound}");
     true

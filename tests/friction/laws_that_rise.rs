@@ -60,7 +60,7 @@ impl Scene<'_> {
     }
 
     /// The rms residual of the slip relative to the rigid slip, and that of `|q| - g` relative to the bounds at rest.
-    pub fn left(&self, found: &Solution) -> [f64; 2] {
+    pub fn residuals(&self, found: &Solution) -> [f64; 2] {
         let Scene { grid, friction, .. } = self;
         let Coefficient::Uniform(soft) = friction.compliance else { panic!("one layer") };
         let (q, n, rolls) = (&found.traction, grid.len(), friction.motion != Motion::Shift);
@@ -195,7 +195,7 @@ fn is_solved(scene: &Scene<'_>, k: usize) -> bool {
 
 /// Asserts that the residuals are within the tolerance. In a shift the tolerance may also be relative to the displacements.
 fn assert_solved(scene: &Scene<'_>, found: &Solution, k: usize) {
-    let [slip, bound] = scene.left(found);
+    let [slip, bound] = scene.residuals(found);
     let displaced = found.slip.iter().zip(0..).map(|(s, i)| {
         let w = scene.friction.rigid_slip_at(&scene.grid, i);
         [(s[0] - w[0]).powi(2) + (s[1] - w[1]).powi(2), w[0] * w[0] + w[1] * w[1]]

@@ -40,7 +40,7 @@ fn particles_below_the_coefficient_at_rest_find_their_solution() {
                     let scene = Scene { grid, pressure: &pressure, friction };
                     let (outcome, report, solution) = scene.solve(TOLERANCE);
                     assert_eq!(outcome, Outcome::Converged, "{m} {had} {memory} {part}: {report:?}");
-                    let left = scene.left(&solution);
+                    let left = scene.residuals(&solution);
                     // Twice the tolerance, for the round-off of sums over up to 1600 elements.
                     assert!(left.iter().all(|left| *left <= 2.0 * TOLERANCE), "{m} {had} {memory} {part}: {left:?}");
                     found += 1;

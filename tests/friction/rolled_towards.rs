@@ -120,7 +120,7 @@ fn steps_that_go_another_way_than_the_bodies_roll_are_refused() {
 /// Only the coefficients of pressures belong to a direction, those of tractions are even in x. The set-up of a handle for transient rolling is
 /// checked, too. A shift has no direction.
 #[test]
-fn so_are_those_of_pressures_alone() {
+fn tables_of_pressures_alone_refuse_steps_another_way() {
     let (_, even) = coefficients(None);
     let ([ahead, _], turned_ahead) = ([1.5, -1.5].map(|speed| coefficients(Some(speed)).0), FRAC_PI_2);
     for (normal, fits, way) in [(ahead.clone(), 0.0, "towards +x"), (turned(&ahead), turned_ahead, "towards +y")] {
@@ -161,7 +161,7 @@ fn per_row(table: &[f64]) -> Vec<f64> {
 /// Row tables of pressures for bodies that relax need not be symmetric, and belong to one direction. The result meets the conditions of contact by
 /// direct sums.
 #[test]
-fn so_are_row_tables_of_pressures() {
+fn row_tables_of_pressures_refuse_steps_another_way() {
     let (_, even) = coefficients(None);
     let case = Case::new((Vec::new(), even.map(|table| per_row(&table))));
     let (cx, _) = REACH;
@@ -201,7 +201,7 @@ fn so_are_row_tables_of_pressures() {
 
 /// Coefficients that are even in x and y allow steps in any direction.
 #[test]
-fn even_ones_go_any_way() {
+fn even_tables_allow_steps_any_way() {
     let case = Case::new(coefficients(None));
     for step in STEPS {
         assert_eq!(case.refusals(Motion::SteadyRolling, step, Motion::SteadyRolling, 0.0), [None, None, None]);

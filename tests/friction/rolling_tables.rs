@@ -220,7 +220,7 @@ impl Small {
     }
 
     /// The rms residual of the conditions of steady rolling with a step of `by` elements along x, relative to the rms rigid slip.
-    fn left(&self, friction: &Friction<'_>, found: &Solution, (by, creepage): (i64, [f64; 2])) -> f64 {
+    fn residual(&self, friction: &Friction<'_>, found: &Solution, (by, creepage): (i64, [f64; 2])) -> f64 {
         let moved = Friction { prescribed: creepage.map(Prescribed::Creepage), ..*friction };
         let (mut left, mut rigid, mut slips) = (0.0, 0.0, 0);
         for i in 0..self.grid.len() {
@@ -277,7 +277,7 @@ fn conditions_hold_by_direct_sums_and_bodies_seen_from_behind_are_the_same() {
     ] {
         let friction = Friction { rolling_distance: 0.5 * f64::from(steps), ..rolling(creepage, spin) };
         let (found, as_given) = small.solved(&friction);
-        let left = small.left(&friction, &found, (i64::from(steps), as_given));
+        let left = small.residual(&friction, &found, (i64::from(steps), as_given));
         // 1 % of the tolerance allows for the round-off of direct sums.
         assert!(left <= 1.01e-8, "{creepage:?} {spin}: {left:e}");
         // The mirrored bodies roll towards -x. Components in x and the spin change their signs, and places are mirrored.
@@ -297,7 +297,7 @@ fn conditions_hold_by_direct_sums_and_bodies_seen_from_behind_are_the_same() {
 }
 
 #[test]
-fn forces_and_laws_go_with_them() {
+fn forces_and_laws_are_solved_with_rolling_tables() {
     let small = Small::new();
     let (carried, friction) = (0.3 * small.pressure.iter().sum::<f64>() * 0.35, rolling([0.0; 2], 1e-3));
     let pulled =
@@ -309,7 +309,7 @@ fn forces_and_laws_go_with_them() {
     );
     // With prescribed forces the solver's residual is relative to the displacements, too, which are larger than the rigid slip; hence 1e-7 instead of
     // 1e-8.
-    assert!(small.left(&pulled, &found, (1, creepage)) <= 1e-7);
+    assert!(small.residual(&pulled, &found, (1, creepage)) <= 1e-7);
     let law = FrictionLaw::new(Fall::Exponential, (0.1, 0.2), 100.0, 1e4);
     let (falls, _) = small.solved(&Friction { law: Some(law), ..rolling([-0.01, 0.0], 0.0) });
     let slips = (0..small.grid.len()).filter(|&i| falls.stick_slip[i] == SLIP);
@@ -326,7 +326,7 @@ fn forces_and_laws_go_with_them() {
 }
 
 #[test]
-fn only_steady_rolling_takes_them_and_y_must_be_even() {
+fn only_steady_rolling_takes_rolling_tables_and_y_must_be_even() {
     let small = Small::new();
     let h = vec![0.0; small.grid.len()];
     let refused = |own: &[Vec<f64>; 3], motion: Motion| {

@@ -256,7 +256,7 @@ fn what_is_no_symmetric_operator_or_does_not_fit_is_refused_by_name() {
 }
 
 #[test]
-fn a_handle_keeps_them_beside_row_tables_of_pressures() {
+fn a_handle_keeps_tangential_row_tables_beside_those_of_pressures() {
     let grid = Grid::new(20, 14, 0.1, 0.1).unwrap();
     let h = paraboloid(&grid, 0.05);
     let tables = tables(&grid, &uneven);

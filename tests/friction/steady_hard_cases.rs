@@ -214,7 +214,7 @@ fn any_start_leads_to_the_same_solution() {
 }
 
 #[test]
-fn cancelled_at_any_callback_it_leaves_feasible_tractions() {
+fn steady_rolling_cancelled_at_any_callback_leaves_feasible_tractions() {
     let (grid, g) = ellipse(1.0, 40);
     for friction in [rolling([-0.4, 0.1], 0.3), with_forces([0.6, 0.2], 0.3, &g, &grid)] {
         assert_eq!(friction.motion, Motion::SteadyRolling);

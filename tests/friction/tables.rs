@@ -155,7 +155,7 @@ fn tables_of_unlike_half_spaces_give_what_these_give() {
 }
 
 #[test]
-fn a_handle_refuses_other_tables_until_it_is_given_them() {
+fn a_handle_refuses_other_tables_until_they_are_set() {
     let (grid, h) = ball(20, 18);
     let (tables, half) = (tables(&grid, 1.0), tables(&grid, 2.0));
     let scene = |tables| Scene {

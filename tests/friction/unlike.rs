@@ -125,7 +125,7 @@ fn both_problems_of_unlike_bodies_meet_their_conditions() {
                 {
                     let friction = Friction { prescribed, ..Friction::new(mu) };
                     let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, load) };
-                    let [normal, tangential] = left(&sums, &scene, tolerance);
+                    let [normal, tangential] = residuals(&sums, &scene, tolerance);
                     // .1 % of the tolerance allows for the different round-off of direct sums and FFT products.
                     assert!(
                         normal.max(tangential) <= 1.001,
@@ -138,7 +138,7 @@ fn both_problems_of_unlike_bodies_meet_their_conditions() {
 }
 
 /// The residuals of the normal and of the tangential problem, relative to the tolerance.
-fn left(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> [f64; 2] {
+fn residuals(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> [f64; 2] {
     let (friction, h) = (scene.friction.as_ref().unwrap(), scene.undeformed_distance);
     let (solver, stop, report) = solve(scene, &Options { tolerance, ..Options::default() }).unwrap();
     assert_eq!(stop, Outcome::Converged);

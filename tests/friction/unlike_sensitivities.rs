@@ -81,7 +81,7 @@ fn derivatives_are_those_of_whole_solves() {
 
 /// Without slip, or without any force, derivatives are numbers: nothing is divided by 0.
 #[test]
-fn the_ends_of_the_way() {
+fn derivatives_without_slip_and_without_force_are_numbers() {
     let m = 12;
     let grid = contact_normal::grid::Grid::new(m, m, 0.5, 0.5).unwrap();
     let h = paraboloid(&grid, 0.04);

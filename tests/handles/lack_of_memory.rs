@@ -58,8 +58,8 @@ impl Ball {
         ball
     }
 
-    /// Gives the scene the effects whose names are in `effect`, or none.
-    fn name(&mut self, effect: &str) {
+    /// Gives the scene the effects that the text `effect` names, or none.
+    fn set_effect(&mut self, effect: &str) {
         let (layer, patches, limit) = (&raw const self.layer, &raw const self.patches, &raw const self.limit);
         let (coating, period) = (&raw const self.coating, &raw const self.period);
         let friction = &raw const self.friction;
@@ -159,7 +159,7 @@ fn after_a_lack_of_memory_the_handle_works() {
     let _alone = alone();
     let mut ball = Ball::new();
     for effect in ["none", "pressure_limit", "layer", "patches", "coating"] {
-        ball.name(effect);
+        ball.set_effect(effect);
         let methods = if effect == "none" { &[0, 1, 2, 3][..] } else { &[0, 1] };
         for &method in methods {
             for first in [None, Some(1 - method.min(1))] {
@@ -175,7 +175,7 @@ fn a_set_up_without_memory_makes_no_handle() {
     let _alone = alone();
     let mut ball = Ball::new();
     for effect in ["none", "layer", "patches", "period", "coating", "coating with a period"] {
-        ball.name(effect);
+        ball.set_effect(effect);
         let expected = ball.solve(&ball.new_handle(), 0);
         assert_eq!(expected.0, CONTACT_NORMAL_OK, "{effect}");
         until_enough(effect, |allowed| {
@@ -201,7 +201,7 @@ fn after_a_lack_of_memory_in_a_step_that_continues_the_handle_works() {
     let _alone = alone();
     let mut ball = Ball::new();
     for effect in FRICTION {
-        ball.name(effect);
+        ball.set_effect(effect);
         for first in [None, Some(0)] {
             fails_everywhere(&ball, first, 1, &format!("{effect} after {first:?}"));
         }
@@ -238,7 +238,7 @@ fn a_tangential_solve_without_memory_is_refused() {
     let _alone = alone();
     let mut ball = Ball::new();
     for effect in FRICTION {
-        ball.name(effect);
+        ball.set_effect(effect);
         let (_, pressure) = ball.solve(&ball.new_handle(), 1);
         let expected = solve_tangential(&ball, &pressure);
         assert_eq!(expected.0, CONTACT_NORMAL_OK, "{effect}");

@@ -101,7 +101,7 @@ fn a_surface_callback_gives_what_a_refined_parabola_gives() {
 }
 
 #[test]
-fn limits_end_it_with_the_best_result() {
+fn limits_end_a_search_with_the_best_result() {
     let far = Accuracy::new(1e-6);
     let at_start: [(Accuracy, &str); 3] = [
         (Accuracy { max_elements: (2 * START * 2 * START - 1) as u64, ..far }, "max_elements"),
@@ -156,7 +156,7 @@ fn a_target_below_round_off_says_the_best_reached() {
 }
 
 #[test]
-fn a_solve_that_does_not_converge_ends_it() {
+fn a_solve_that_does_not_converge_ends_a_search() {
     let options = Options { max_cycles: 1, method: Method::Norm, ..Options::default() };
     let outcome = solved(Load::Approach(case::APPROACH), Accuracy::new(1e-3), &options);
     assert_eq!(outcome.stop, Outcome::IterationLimit);
@@ -176,7 +176,7 @@ fn no_contact_is_no_error() {
 }
 
 #[test]
-fn elements_without_surface_stay_so() {
+fn elements_without_surface_stay_excluded_on_finer_grids() {
     let mut h = case::undeformed_distance(START);
     // The contact area has a hole in its middle.
     h[START * 7 + 8] = f64::INFINITY;
@@ -214,7 +214,7 @@ fn a_solve_that_takes_too_long_is_dropped() {
 }
 
 #[test]
-fn without_an_estimate_it_is_given_up() {
+fn a_search_without_an_estimate_is_given_up() {
     // A pin of one element, which is the last of a block of 4 x 4 elements. Coarser grids sample the middle of blocks and miss the pin, so that they
     // have no contact.
     let mut surface = |grid: &Grid, h: &mut [f64]| {

@@ -177,7 +177,7 @@ fn slender_elements_have_periodic_coefficients_in_bounded_time() {
 }
 
 #[test]
-fn with_two_periods_slender_ones_have_the_spectrum_of_plane_strain_across() {
+fn with_two_periods_slender_elements_have_the_spectrum_of_plane_strain_across() {
     // The mean of A along the shorter period is, in the Fourier domain, `sum over kx of A = sum over aliases of 2 pi c/|q| sinc(q dy/2)` at waves q
     // in y. It is even and has mean zero. In real space it is the log-sine series of images of lines.
     for slenderness in [1e-2, 1e-4, 1e-8] {
@@ -196,7 +196,7 @@ fn with_two_periods_slender_ones_have_the_spectrum_of_plane_strain_across() {
 }
 
 #[test]
-fn between_the_ways_of_summation_nothing_jumps() {
+fn coefficients_do_not_jump_between_the_ways_of_summation() {
     // With two periods of which one is much longer, the library sums one line of images below a ratio of 24, and three lines above it. The
     // coefficients must be smooth functions of dy there.
     let at = |dy: f64, kx: i64, ky: i64| {

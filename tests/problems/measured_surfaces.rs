@@ -126,7 +126,7 @@ fn high_points_that_hide_the_others_cost_few_iterations() {
 
 /// The same kind of surface with a pressure limit that the spike does not reach.
 #[test]
-fn a_limit_that_is_not_reached_changes_nothing_of_that() {
+fn a_limit_that_is_not_reached_costs_few_iterations() {
     let m = 96;
     let mut h: Vec<f64> = rough(m, m, 0.3, 3).iter().map(|z| z + 2000.0).collect();
     h[20 * m + 30] = 0.0;
@@ -225,7 +225,7 @@ fn flat_on_flat_with_two_periods_ends() {
 
 /// A uniform p causes no displacement, so that the energy is linear in it. Pressures therefore go to the limit, which is the solution.
 #[test]
-fn flat_on_flat_within_limits_fills_them() {
+fn flat_on_flat_within_limits_is_at_its_limits() {
     for (mx, my) in [(1, 1), (2, 4), (3, 11), (10, 23), (64, 64)] {
         for (height, depth, limit) in [(0.0, 1e-6, 1e-4), (-0.3, 0.01, 0.4), (0.7, 0.8, 1e-3)] {
             let (grid, h) = (Grid::new(mx, my, 0.7, 0.7).unwrap(), vec![height; mx * my]);

@@ -98,7 +98,7 @@ fn log_integral(y: f64, w: f64) -> f64 {
 }
 
 #[test]
-fn with_one_period_they_are_the_sum_of_images_and_their_mean_is_that_of_plane_strain() {
+fn with_one_period_coefficients_are_the_sum_of_images_and_their_mean_is_that_of_plane_strain() {
     for (mx, my, dx, dy) in
         [(8, 8, 1.0, 1.0), (9, 4, 0.5, 0.75), (1, 12, 2.0, 1.0), (6, 40, 0.1, 0.2), (40, 3, 1.0, 2.0)]
     {

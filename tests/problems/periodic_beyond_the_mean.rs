@@ -71,7 +71,7 @@ fn a_given_contact_area_that_is_full_takes_a_force() {
     assert!(report.measures.approach.abs() <= options.tolerance * 2.0, "{}", report.measures.approach);
 }
 
-/// Elements at their limit do not follow the approach, so that the others need not have the mean distance.
+/// Beyond the mean of h the mean of e is negative. Elements at their limit may have a negative e, so that the others need not.
 #[test]
 fn limits_give_way_beyond_the_mean() {
     let h = surface();

@@ -263,8 +263,8 @@ fn reached_limits_have_errors_from_several_grids() {
     assert!(off <= 1e-2, "{off:e}: {}", outcome.reason);
 }
 
-/// Forces of steady rolling have errors of first order. The estimate is half of the largest change between grids, although the last change is fifteen
-/// times smaller. One grid alone has no estimate.
+/// Forces of steady rolling have errors of first order. Here the last change between grids is fifteen times smaller than the one before, by chance.
+/// The estimate is half of the change before. One grid alone has no estimate.
 #[test]
 fn errors_of_tangential_forces_follow_from_the_grids() {
     let grid = Grid::new(48, 48, 0.1, 0.1).expect("a grid");

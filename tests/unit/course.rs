@@ -37,7 +37,7 @@ fn a_stress_at_the_surface_that_overtakes_is_counted() {
 }
 
 #[test]
-fn one_that_stays_below_is_not() {
+fn a_stress_at_the_surface_that_stays_below_is_not_counted() {
     let low = OVERTAKEN.map(|(value, depth, at_surface)| (value, depth, 0.3 * at_surface));
     let error = course(Quantity::MaxVonMises, &low).error(false).expect("an error").now();
     assert!(error < 0.01, "{error}");

@@ -9,7 +9,7 @@ fn change(p: &[f64], u: &[f64]) -> [f64; 6] {
 }
 
 #[test]
-fn a_change_is_measured_where_it_is() {
+fn a_change_is_measured_where_pressures_change() {
     let (p, u) = ([2.0, 0.0, -1.0, 3.0, 0.0, 1.0], [5.0, 4.0, 3.0, 2.0, 1.0, 6.0]);
     // The last sum is that of w^2 over the elements with a change d, and no others.
     assert_eq!(change(&p, &u), [5.0, 7.0, 7.0, 19.0, 15.0, 25.0 + 9.0 + 4.0 + 36.0]);

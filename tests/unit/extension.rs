@@ -46,7 +46,7 @@ fn in_contact((mx, my): (usize, usize)) -> Vec<bool> {
 }
 
 #[test]
-fn it_is_what_the_definition_says() {
+fn the_extension_is_what_its_definition_says() {
     for threads in [Threads::One, Threads::new(2).unwrap()] {
         for size in SIZES {
             is_by_definition(size, &threads);

@@ -143,7 +143,7 @@ fn assert_conditions(name: &str, scene: &Scene<'_>, solver: &Solver, beside: &[f
 }
 
 #[test]
-fn beside_every_other_effect_conditions_hold_or_it_is_refused() {
+fn beside_every_other_effect_conditions_hold_or_the_foundation_is_refused() {
     let (grid, h) = (grid(), ball());
     let mut hole = h.clone();
     hole[5 * MX + 6] = f64::INFINITY;
@@ -242,7 +242,7 @@ fn with_unlike_bodies_both_displace_the_distance() {
 }
 
 #[test]
-fn it_is_refused_where_its_properties_say_so() {
+fn the_foundation_is_refused_where_its_properties_say_so() {
     let (grid, h, options) = (grid(), ball(), Options::default());
     let rest = with(FOUNDATION, Scene::new(grid, &h, BODIES, Load::Force(0.05)));
     let on = with(Foundation { continues: true, ..FOUNDATION }, rest.clone());

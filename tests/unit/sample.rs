@@ -38,7 +38,7 @@ fn what_is_done_beyond_a_residual_goes() {
 /// With friction the normal problem is solved first, then the tangential one. The products of the latter are not reported; there are four between its
 /// first iterations.
 #[test]
-fn both_problems_of_friction_end_there() {
+fn normal_and_tangential_problems_end_at_their_tolerance() {
     let reached = vec![(1e-2, 1.0, 1.0), (1e-4, 2.0, 2.0), (1e-1, 3.0, 2.0), (1e-3, 4.0, 2.0), (1e-5, 5.0, 2.0)];
     // To this tolerance the last iteration of either problem is not needed: 1 s and one product of the normal one, 1 s and a third of 6 products of
     // the tangential one.

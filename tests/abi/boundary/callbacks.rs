@@ -135,7 +135,7 @@ fn a_callback_runs_in_the_environment_of_the_host_and_changes_no_bit() {
 }
 
 #[test]
-fn so_do_the_surface_and_the_log() {
+fn the_surface_and_the_log_run_in_the_environment_of_the_host() {
     let run = |watch: *mut Watch| {
         let mut call = Call::new();
         call.accuracy.known.surface = Some(surface);

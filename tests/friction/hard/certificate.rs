@@ -114,7 +114,7 @@ fn residual(case: &Case, motion: Motion, g: &[f64], q: &[Vector], creepage: Vect
     let scale = match motion {
         Motion::Shift => rms(&rigid).max(rms(&displaced)),
         Motion::SteadyRolling if has_forces => rms(&rigid).max(rms(&displaced)),
-        // In slow rolling the rigid slip may be below the round-off of the displacements, which is then the scale.
+        // In slow rolling the scale is at least the root of the machine epsilon, 1.5e-8, times the displacements.
         _ => rms(&rigid).max(f64::EPSILON.sqrt() * rms(&displaced)),
     };
     let part = |value: f64| if value == 0.0 { 0.0 } else { value / scale };
