@@ -62,8 +62,8 @@ fn motions_and_forces_meet_the_conditions() {
             let (report, solution) = run(&mut solver, &g, &friction, 1e-7);
             let none = vec![[0.0; 2]; grid.len()];
             let sums = |by: (f64, f64), q: &[Vector], u: &mut [Vector]| dense::apply(&coated, &grid, by, q, u);
-            let left = residual_by(sums, &grid, &g, &friction, &none, (&report, &solution));
-            assert!(left <= 1.01e-7, "{t} {mu} {friction:?}: {left:e}");
+            let slip_residual = residual_by(sums, &grid, &g, &friction, &none, (&report, &solution));
+            assert!(slip_residual <= 1.01e-7, "{t} {mu} {friction:?}: {slip_residual:e}");
         }
     }
 }

@@ -20,10 +20,14 @@ fn random_motions_and_forces_meet_the_conditions() {
             let (report, solution) = run(&mut solver, &case.bound, &case.friction, 1e-6);
             let none = vec![[0.0; 2]; case.grid.len()];
             let found = (&report, &solution);
-            let left = residual((&case.grid, case.nu), &case.bound, &case.friction, &none, found);
+            let slip_residual = residual((&case.grid, case.nu), &case.bound, &case.friction, &none, found);
             // The tolerance of the solve, and 1e-9 for the different round-off of direct sums and FFT products.
-            assert!(left <= 1.001e-6, "{seed} {forces}: {left}, reported {}", report.certificate.residual);
-            assert!((left - report.certificate.residual).abs() <= 1e-10);
+            assert!(
+                slip_residual <= 1.001e-6,
+                "{seed} {forces}: {slip_residual}, reported {}",
+                report.certificate.residual
+            );
+            assert!((slip_residual - report.certificate.residual).abs() <= 1e-10);
             let carried = case.bound.iter().sum::<f64>() * case.grid.element_area();
             for k in 0..2 {
                 let sum: f64 = solution.traction.iter().map(|q| q[k]).sum::<f64>() * case.grid.element_area();
@@ -96,8 +100,8 @@ fn hard_cases_have_their_answers() {
             ("spin alone", Friction { spin: 0.7, ..Friction::new(1.0) }),
         ] {
             let (report, solution) = run(&mut solver(grid, 0.3), g, &friction, 1e-6);
-            let left = residual((grid, 0.3), g, &friction, &none, (&report, &solution));
-            assert!(left <= 1.001e-6, "{name}, {what}: {left}");
+            let slip_residual = residual((grid, 0.3), g, &friction, &none, (&report, &solution));
+            assert!(slip_residual <= 1.001e-6, "{name}, {what}: {slip_residual}");
             assert_eq!(report.certificate.stick_count + report.certificate.slip_count, in_contact, "{name}, {what}");
             match what {
                 "mu 1e9" => assert_eq!(report.certificate.slip_count, 0, "{name}"),
@@ -212,8 +216,8 @@ fn previous_tractions_of_any_kind_are_taken() {
     };
     let (report, solution) = run(&mut solver(&grid, 0.3), &g, &friction, 1e-6);
     let before: Vec<_> = garbage.iter().map(|q| [*q, *q]).collect();
-    let left = residual((&grid, 0.3), &g, &friction, &before, (&report, &solution));
-    assert!(left <= 1.001e-6, "{left}");
+    let slip_residual = residual((&grid, 0.3), &g, &friction, &before, (&report, &solution));
+    assert!(slip_residual <= 1.001e-6, "{slip_residual}");
 }
 
 #[test]

@@ -70,8 +70,8 @@ fn each_effect_changes_the_tractions_or_is_refused() {
         solution.traction.iter_mut().flatten().for_each(|q| *q *= compliance);
         let pressures: Vec<f64> = solver.state().p.iter().map(|p| p.max(0.0) * compliance).collect();
         let conditions = (&report.friction.unwrap(), &solution);
-        let left = residual((&grid, 0.28), &pressures, &pushed(), &vec![[0.0; 2]; grid.len()], conditions);
-        assert!(left <= 1.001e-6, "{name}: {left}");
+        let slip_residual = residual((&grid, 0.28), &pressures, &pushed(), &vec![[0.0; 2]; grid.len()], conditions);
+        assert!(slip_residual <= 1.001e-6, "{name}: {slip_residual}");
         let found = &solver.friction().unwrap().traction;
         let change = found.iter().zip(&alone).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
         // Tractions are up to mu times pressures of some 1000, so that a change of 1 is not the solver's tolerance.

@@ -15,9 +15,9 @@ const TOLERANCE: f64 = 1e-6;
 /// creepages.
 fn meets(grid: &Grid, g: &[f64], friction: &Friction<'_>, before: &[[f64; 2]], what: &str) -> [f64; 2] {
     let (report, solution) = run(&mut solver(grid, 0.3), g, friction, TOLERANCE);
-    let left = residual((grid, 0.3), g, friction, before, (&report, &solution));
+    let slip_residual = residual((grid, 0.3), g, friction, before, (&report, &solution));
     // 1 % of the tolerance allows for the round-off of the test's direct sums.
-    assert!(left <= 1.01 * TOLERANCE, "{what}: {left:e}");
+    assert!(slip_residual <= 1.01 * TOLERANCE, "{what}: {slip_residual:e}");
     let mu = friction.coefficient.at(0);
     let carried = mu * g.iter().sum::<f64>() * grid.element_area();
     for k in 0..2 {

@@ -31,9 +31,10 @@ fn glued_elements_beside_ordinary_ones_leave_no_slip() {
                 let (grid, g) = pressures(12, |i| if i % 12 < 6 { large } else { 1.0 });
                 let friction = Friction { motion, prescribed, ..Friction::new(0.1) };
                 let (report, solution) = run(&mut solver(&grid, NU), &g, &friction, 1e-7);
-                let left = residual((&grid, NU), &g, &friction, &vec![[0.0; 2]; g.len()], (&report, &solution));
+                let slip_residual =
+                    residual((&grid, NU), &g, &friction, &vec![[0.0; 2]; g.len()], (&report, &solution));
                 // Ten times the tolerance: 9e-7 allow for the round-off of the test's sums of 144 terms.
-                assert!(left <= 1e-6, "{large:e} {motion:?} {prescribed:?}: {left:e}");
+                assert!(slip_residual <= 1e-6, "{large:e} {motion:?} {prescribed:?}: {slip_residual:e}");
                 if let Prescribed::Force(force) = prescribed[0] {
                     assert!(
                         (report.force[0] - force).abs() <= 1e-6 * force,

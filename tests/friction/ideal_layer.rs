@@ -35,8 +35,8 @@ fn both(pressure: &[f64], grid: &Grid, friction: &Friction<'_>, hardened: bool) 
 fn assert_same([ideal, hardly]: [Solution; 2], what: &str) {
     let largest = hardly.traction.iter().flatten().fold(0.0f64, |most, q| most.max(q.abs()));
     for (i, (a, b)) in ideal.traction.iter().zip(&hardly.traction).enumerate() {
-        // Three causes of a difference: a residual of 1e-9 of the rms slip, which may be concentrated in one of 576 elements; and the hardening of
-        // 1e-6 MPa/mm times slips of up to 1e-6 mm.
+        // Two causes of a difference: a residual of 1e-9 of the rms slip, which may be concentrated in one of 576 elements; and the hardening of 1e-6
+        // MPa/mm times slips of up to 1e-6 mm.
         assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-6 * largest, "{what}, element {i}: {a:?} {b:?}");
         let limit = ideal.particles[i].yield_limit;
         assert!(a[0].hypot(a[1]) <= limit * (1.0 + 1e-12), "{what}, element {i}: {a:?} of {limit}");

@@ -40,9 +40,12 @@ fn particles_below_the_coefficient_at_rest_find_their_solution() {
                     let scene = Scene { grid, pressure: &pressure, friction };
                     let (outcome, report, solution) = scene.solve(TOLERANCE);
                     assert_eq!(outcome, Outcome::Converged, "{m} {had} {memory} {part}: {report:?}");
-                    let left = scene.residuals(&solution);
+                    let residuals = scene.residuals(&solution);
                     // Twice the tolerance, for the round-off of sums over up to 1600 elements.
-                    assert!(left.iter().all(|left| *left <= 2.0 * TOLERANCE), "{m} {had} {memory} {part}: {left:?}");
+                    assert!(
+                        residuals.iter().all(|residual| *residual <= 2.0 * TOLERANCE),
+                        "{m} {had} {memory} {part}: {residuals:?}"
+                    );
                     found += 1;
                 }
             }

@@ -55,9 +55,9 @@ fn all_motions_meet_the_conditions() {
                     let (report, solution) = run(&mut solver, &case.bound, &friction, 1e-6);
                     let none = vec![[0.0; 2]; case.grid.len()];
                     let (place, found) = ((&case.grid, case.nu), (&report, &solution));
-                    let left = residual(place, &case.bound, &friction, &none, found);
+                    let slip_residual = residual(place, &case.bound, &friction, &none, found);
                     // The tolerance of the solve, and 1e-9 for the different round-off of direct sums and FFT products.
-                    assert!(left <= 1.001e-6, "{seed} {motion:?} {step} {forces}: {left}");
+                    assert!(slip_residual <= 1.001e-6, "{seed} {motion:?} {step} {forces}: {slip_residual}");
                     most = most.max(report.products);
                     if motion == Motion::SteadyRolling {
                         continue;
@@ -70,8 +70,11 @@ fn all_motions_meet_the_conditions() {
                     let (previous, spin) = (Previous::Kept, 0.5 * friction.spin);
                     let next = Friction { previous, spin, prescribed, ..friction };
                     let (report, after) = run(&mut solver, &case.bound, &next, 1e-6);
-                    let left = residual(place, &case.bound, &next, &solution.traction, (&report, &after));
-                    assert!(left <= 1.001e-6, "{seed} {motion:?} {step} {forces}, the next step: {left}");
+                    let slip_residual = residual(place, &case.bound, &next, &solution.traction, (&report, &after));
+                    assert!(
+                        slip_residual <= 1.001e-6,
+                        "{seed} {motion:?} {step} {forces}, the next step: {slip_residual}"
+                    );
                 }
             }
         }
@@ -121,9 +124,9 @@ fn compliances_that_differ_by_a_hundred_times_take_few_products() {
             let friction = Friction { motion, compliance, ..case.friction };
             let (report, solution) = run(&mut solver(&case.grid, case.nu), &case.bound, &friction, 1e-6);
             let none = vec![[0.0; 2]; case.grid.len()];
-            let left = residual((&case.grid, case.nu), &case.bound, &friction, &none, (&report, &solution));
+            let slip_residual = residual((&case.grid, case.nu), &case.bound, &friction, &none, (&report, &solution));
             // The tolerance of the solve, and 1e-9 for the different round-off of direct sums and FFT products.
-            assert!(left <= 1.001e-6, "{seed} {motion:?}: {left}");
+            assert!(slip_residual <= 1.001e-6, "{seed} {motion:?}: {slip_residual}");
             of_both[k] += report.products;
             of_motion[seed as usize % 3][k] += report.products;
             most[k] = most[k].max(report.products);

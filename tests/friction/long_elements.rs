@@ -49,8 +49,8 @@ fn shifts_of_rough_lines_are_solved_however_long_their_elements() {
         let (end, report) = solver.solve(&Request::new(&p, &friction, 1e-6), &mut |_, _| true).unwrap();
         assert_eq!(end, Outcome::Converged, "{seed}: {report:?}");
         let none = vec![[0.0; 2]; grid.len()];
-        let left = residual((&grid, 0.3), &p, &friction, &none, (&report, solver.solution().unwrap()));
-        assert!(left <= 1e-6 + ROUND_OFF, "{seed}: {left:e}");
+        let slip_residual = residual((&grid, 0.3), &p, &friction, &none, (&report, solver.solution().unwrap()));
+        assert!(slip_residual <= 1e-6 + ROUND_OFF, "{seed}: {slip_residual:e}");
     }
 }
 
@@ -68,8 +68,8 @@ fn bounds_of_any_ratio_roll() {
             let mut solver = solver(&grid, 0.3);
             let (end, report) = solver.solve(&Request::new(&p, &friction, 1e-6), &mut |_, _| true).unwrap();
             assert_eq!(end, Outcome::Converged, "{p:?} {angle}: {report:?}");
-            let left = residual((&grid, 0.3), &p, &friction, &[], (&report, solver.solution().unwrap()));
-            assert!(left <= 1e-6 + ROUND_OFF, "{p:?} {angle}: {left:e}");
+            let slip_residual = residual((&grid, 0.3), &p, &friction, &[], (&report, solver.solution().unwrap()));
+            assert!(slip_residual <= 1e-6 + ROUND_OFF, "{p:?} {angle}: {slip_residual:e}");
         }
     }
 }

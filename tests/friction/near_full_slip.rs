@@ -125,7 +125,7 @@ fn one_element_alone_sticks() {
             }
         }
     }
-    // Measured: 7020 products, including those of the certificate of the normal problem. The bound leaves 7 %.
+    // Measured: 7020 products, each solve with the certificate of the normal problem. The bound leaves 7 %.
     assert!(products <= 7500.0, "{products} products");
 }
 

@@ -48,9 +48,9 @@ fn steps_in_any_direction_and_of_any_length_meet_the_conditions() {
             };
             for _ in 0..4 {
                 let (report, now) = run(&mut solver, &g, &step, 1e-6);
-                let left = residual((&grid, 0.3), &g, &step, &before.traction, (&report, &now));
+                let slip_residual = residual((&grid, 0.3), &g, &step, &before.traction, (&report, &now));
                 // The tolerance, and round-off of the displacements, which are far larger than the slip: 2e-9 is ample.
-                assert!(left <= 1.001e-6 + 1e-9, "{direction} {length}: {left}");
+                assert!(slip_residual <= 1.001e-6 + 1e-9, "{direction} {length}: {slip_residual}");
                 before = now;
             }
         }
@@ -77,8 +77,8 @@ fn a_long_step_of_whole_elements_takes_no_more_memory_than_a_short_one() {
         let by = step.elements_rolled(&grid);
         assert_eq!((by.0.fract(), by.0, by.1), (0.0, by.1, 3e5));
         let (report, now) = run(&mut solver, &g, &step, 1e-6);
-        let left = residual((&grid, 0.3), &g, &step, &before.traction, (&report, &now));
-        assert!(left <= 1.001e-6 + 1e-9, "{motion:?}: {left}");
+        let slip_residual = residual((&grid, 0.3), &g, &step, &before.traction, (&report, &now));
+        assert!(slip_residual <= 1.001e-6 + 1e-9, "{motion:?}: {slip_residual}");
         assert!(report.certificate.stick_count > 0 && report.certificate.slip_count > 0);
     }
 }
@@ -150,13 +150,13 @@ fn rolling_becomes_steady() {
     let tangential = tangential(&grid, nu);
     dense::apply(&tangential, &grid, (0.0, 0.0), &last.traction, &mut here);
     dense::apply(&tangential, &grid, (1.0, 0.0), &last.traction, &mut there);
-    let (mut left, mut all) = (0.0, 0.0);
+    let (mut slip_residual, mut all) = (0.0, 0.0);
     for i in (0..grid.len()).filter(|&i| g[i] > 0.0) {
         let w = step.rigid_slip_at(&grid, i);
         let s = [w[0] + here[i][0] - there[i][0], w[1] + here[i][1] - there[i][1]];
         let q = last.traction[i];
         let power = s[0] * q[0] + s[1] * q[1] + g[i] * s[0].hypot(s[1]);
-        (left, all) = (left + power, all + g[i] * w[0].hypot(w[1]));
+        (slip_residual, all) = (slip_residual + power, all + g[i] * w[0].hypot(w[1]));
     }
-    assert!(left / all <= 1e-4, "gap {}", left / all);
+    assert!(slip_residual / all <= 1e-4, "gap {}", slip_residual / all);
 }

@@ -222,7 +222,7 @@ impl Small {
     /// The rms residual of the conditions of steady rolling with a step of `by` elements along x, relative to the rms rigid slip.
     fn residual(&self, friction: &Friction<'_>, found: &Solution, (by, creepage): (i64, [f64; 2])) -> f64 {
         let moved = Friction { prescribed: creepage.map(Prescribed::Creepage), ..*friction };
-        let (mut left, mut rigid, mut slips) = (0.0, 0.0, 0);
+        let (mut squares, mut rigid, mut slips) = (0.0, 0.0, 0);
         for i in 0..self.grid.len() {
             if found.stick_slip[i] == EXTERIOR {
                 assert_eq!(found.traction[i], [0.0; 2]);
@@ -243,14 +243,15 @@ impl Small {
                 let difference = (s[k] - found.slip[i][k]).abs();
                 assert!(difference <= 1e-11, "the slip of {i}: {s:?} {:?}", found.slip[i]);
             }
-            left += rest[0].powi(2) + rest[1].powi(2);
+            squares += rest[0].powi(2) + rest[1].powi(2);
             rigid += w[0].powi(2) + w[1].powi(2);
         }
         assert!(slips > 0);
-        (left / rigid).sqrt()
+        (squares / rigid).sqrt()
     }
 }
 
+/// Steady rolling along x with given creepages and spin; mu = 0.3.
 fn rolling(creepage: [f64; 2], spin: f64) -> Friction<'static> {
     Friction {
         motion: Motion::SteadyRolling,
@@ -277,9 +278,9 @@ fn conditions_hold_by_direct_sums_and_bodies_seen_from_behind_are_the_same() {
     ] {
         let friction = Friction { rolling_distance: 0.5 * f64::from(steps), ..rolling(creepage, spin) };
         let (found, as_given) = small.solved(&friction);
-        let left = small.residual(&friction, &found, (i64::from(steps), as_given));
+        let residual = small.residual(&friction, &found, (i64::from(steps), as_given));
         // 1 % of the tolerance allows for the round-off of direct sums.
-        assert!(left <= 1.01e-8, "{creepage:?} {spin}: {left:e}");
+        assert!(residual <= 1.01e-8, "{creepage:?} {spin}: {residual:e}");
         // The mirrored bodies roll towards -x. Components in x and the spin change their signs, and places are mirrored.
         let back = Friction {
             prescribed: [Prescribed::Creepage(-creepage[0]), Prescribed::Creepage(creepage[1])],

@@ -111,9 +111,9 @@ fn all_motions_meet_the_conditions_by_direct_sums() {
                 let (report, solution) = run(&mut solver, &pressure, &friction, 1e-6);
                 let none = vec![[0.0; 2]; grid.len()];
                 let direct = |by: (f64, f64), q: &[Vector], u: &mut [Vector]| sums(&grid, &tables, by, q, u);
-                let left = residual_by(direct, &grid, &pressure, &friction, &none, (&report, &solution));
+                let slip_residual = residual_by(direct, &grid, &pressure, &friction, &none, (&report, &solution));
                 // The tolerance of the solve, and 1e-9 for the different round-off of direct sums and FFT products.
-                assert!(left <= 1.001e-6, "{mx} {friction:?}: {left}");
+                assert!(slip_residual <= 1.001e-6, "{mx} {friction:?}: {slip_residual}");
                 if friction.motion == Motion::SteadyRolling {
                     continue;
                 }
@@ -121,8 +121,8 @@ fn all_motions_meet_the_conditions_by_direct_sums() {
                 let moved = ellipse(&grid, (x - 1.0, y + 0.7), (0.8 * x, 0.8 * y));
                 let next = Friction { previous: Previous::Kept, ..friction };
                 let (report, after) = run(&mut solver, &moved, &next, 1e-6);
-                let left = residual_by(direct, &grid, &moved, &next, &solution.traction, (&report, &after));
-                assert!(left <= 1.001e-6, "{mx} {friction:?}, the next step: {left}");
+                let slip_residual = residual_by(direct, &grid, &moved, &next, &solution.traction, (&report, &after));
+                assert!(slip_residual <= 1.001e-6, "{mx} {friction:?}, the next step: {slip_residual}");
             }
         }
     }
@@ -139,8 +139,8 @@ fn a_box_that_begins_at_another_row_has_other_tables() {
         for pressure in [&low, &high, &low] {
             let (report, solution) = run(&mut kept, pressure, &friction, 1e-8);
             let direct = |by: (f64, f64), q: &[Vector], u: &mut [Vector]| sums(&grid, &tables, by, q, u);
-            let left = residual_by(direct, &grid, pressure, &friction, &none, (&report, &solution));
-            assert!(left <= 1.001e-8, "{friction:?}: {left}");
+            let slip_residual = residual_by(direct, &grid, pressure, &friction, &none, (&report, &solution));
+            assert!(slip_residual <= 1.001e-8, "{friction:?}: {slip_residual}");
         }
     }
 }
@@ -173,8 +173,8 @@ fn a_single_row_and_a_single_column_are_solved() {
             let (report, solution) = run(&mut own_solver(&grid, &tables), &pressure, &friction, 1e-7);
             let none = vec![[0.0; 2]; grid.len()];
             let direct = |by: (f64, f64), q: &[Vector], u: &mut [Vector]| sums(&grid, &tables, by, q, u);
-            let left = residual_by(direct, &grid, &pressure, &friction, &none, (&report, &solution));
-            assert!(left <= 1.001e-7, "{mx} x {my} {friction:?}: {left}");
+            let slip_residual = residual_by(direct, &grid, &pressure, &friction, &none, (&report, &solution));
+            assert!(slip_residual <= 1.001e-7, "{mx} x {my} {friction:?}: {slip_residual}");
         }
     }
 }

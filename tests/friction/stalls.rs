@@ -46,9 +46,9 @@ fn where_gradients_stall_newtons_method_goes_on() {
         assert_eq!(end, Outcome::Converged, "{seed}");
         let found = (&report, solver.solution().unwrap());
         let none = vec![[0.0; 2]; case.grid.len()];
-        let left = residual((&case.grid, case.nu), &case.bound, &case.friction, &none, found);
+        let slip_residual = residual((&case.grid, case.nu), &case.bound, &case.friction, &none, found);
         // The tolerance of the solve, and 1e-9 for the different round-off of direct sums and FFT products.
-        assert!(left <= 1.001e-6, "{seed}: {left}");
+        assert!(slip_residual <= 1.001e-6, "{seed}: {slip_residual}");
         stalls += u32::from(TOLD.get() > 0);
     }
     assert!(stalls >= 4, "gradients stalled in {stalls} scenes");

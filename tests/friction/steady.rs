@@ -52,7 +52,7 @@ fn a_cylinder_rolls_as_carter_says() {
     for m in [110, 220, 440, 880, 1760] {
         let (report, _) = carter(m);
         // Exact (Carter 1926; Johnson, Contact Mechanics, 8.3): F/(mu N) = 1 - (a'/a)^2. The creepage is mu (a - a')/R = .00024, so that a' = .6 a.
-        // The error is of first order in the element, which is 2.2/m of the half-width. The bound of .8/m is .36 elements, in half-widths.
+        // The error is of first order in the element, which is 2.2/m of the half-width. The bound .8/m is .36 of this.
         let error = (part_of_bound(&report.friction.unwrap()) - 0.64).abs();
         assert!(error <= 0.8 / m as f64 && error < 0.9 * before, "{m}: {error} {before}");
         before = error;
@@ -71,9 +71,13 @@ pub fn rolling(creepage: [f64; 2], spin: f64) -> Friction<'static> {
 
 /// Checks the conditions of friction by direct sums, for a solve with a tolerance of 1e-6.
 fn check(grid: &Grid, g: &[f64], friction: &Friction<'_>, found: (&Report, &Solution)) {
-    let left = residual((grid, NU), g, friction, &[], found);
+    let slip_residual = residual((grid, NU), g, friction, &[], found);
     // Direct sums and FFT products differ by round-off: 1e-9 beyond the tolerance of 1e-6, and 1e-10 beside the reported residual, are ample for it.
-    assert!(left <= 1.001e-6 && (left - found.0.certificate.residual).abs() <= 1e-10, "{left} {:?}", found.0);
+    assert!(
+        slip_residual <= 1.001e-6 && (slip_residual - found.0.certificate.residual).abs() <= 1e-10,
+        "{slip_residual} {:?}",
+        found.0
+    );
 }
 
 #[test]
@@ -149,9 +153,9 @@ fn random_cases_of_steady_rolling_meet_the_conditions() {
         for forces in [false, true] {
             let case = Ellipse::random_rolling(seed, 24, forces);
             let (report, solution) = run(&mut solver(&case.grid, case.nu), &case.bound, &case.friction, 1e-6);
-            let left = residual((&case.grid, case.nu), &case.bound, &case.friction, &[], (&report, &solution));
+            let slip_residual = residual((&case.grid, case.nu), &case.bound, &case.friction, &[], (&report, &solution));
             // The tolerance of the solve, and 1e-9 for the different round-off of direct sums and FFT products.
-            assert!(left <= 1.001e-6, "{seed} {forces}: {left}");
+            assert!(slip_residual <= 1.001e-6, "{seed} {forces}: {slip_residual}");
         }
     }
 }

@@ -26,8 +26,8 @@ fn any_force_below_mu_n_is_reached_whatever_the_spin() {
         for part in [0.0, 0.9, 0.99, 0.999, 0.99999] {
             let friction = with_forces([-0.8 * part, 0.6 * part], spin, &g, &grid);
             let found = run(&mut solver(&grid, NU), &g, &friction, 1e-6);
-            let left = residual((&grid, NU), &g, &friction, &[], (&found.0, &found.1));
-            assert!(left <= 1.001e-6 || (part, spin) == (0.0, 0.0), "{spin} {part}: {left}");
+            let slip_residual = residual((&grid, NU), &g, &friction, &[], (&found.0, &found.1));
+            assert!(slip_residual <= 1.001e-6 || (part, spin) == (0.0, 0.0), "{spin} {part}: {slip_residual}");
             let apart = (found.0.force[0] + 0.8 * part * carried).hypot(found.0.force[1] - 0.6 * part * carried);
             assert!(apart <= 1e-6 * carried, "{spin} {part}: {:?}", found.0.force);
         }
@@ -83,8 +83,8 @@ fn hard_cases_of_steady_rolling_have_their_answers() {
             for &direction in directions {
                 let friction = Friction { rolling_direction: direction.to_radians(), ..friction };
                 let (report, solution) = run(&mut solver(grid, NU), g, &friction, 1e-6);
-                let left = residual((grid, NU), g, &friction, &[], (&report, &solution));
-                assert!(left <= 1.001e-6, "{name}, {what}, {direction}: {left}");
+                let slip_residual = residual((grid, NU), g, &friction, &[], (&report, &solution));
+                assert!(slip_residual <= 1.001e-6, "{name}, {what}, {direction}: {slip_residual}");
                 assert_eq!(
                     report.certificate.stick_count + report.certificate.slip_count,
                     in_contact,
@@ -118,8 +118,9 @@ fn a_force_beside_a_creepage_of_another_order_is_met() {
                 let prescribed = [Prescribed::Creepage(-creepage), Prescribed::Force(part * carried)];
                 let friction = Friction { motion, prescribed, ..Friction::new(1.0) };
                 let (report, solution) = run(&mut solver(&grid, NU), &g, &friction, 1e-6);
-                let left = residual((&grid, NU), &g, &friction, &vec![[0.0; 2]; grid.len()], (&report, &solution));
-                assert!(left <= 1.001e-6, "{motion:?}, {creepage}, {part}: {left}");
+                let slip_residual =
+                    residual((&grid, NU), &g, &friction, &vec![[0.0; 2]; grid.len()], (&report, &solution));
+                assert!(slip_residual <= 1.001e-6, "{motion:?}, {creepage}, {part}: {slip_residual}");
                 assert!((report.force[1] - part * carried).abs() <= 1e-6 * carried, "{motion:?}, {creepage}, {part}");
             }
         }
@@ -173,8 +174,8 @@ fn short_steps_on_long_elements_are_solved() {
         let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
         assert_eq!(end, Outcome::Converged, "{nu} {creepage:?} {report:?}");
         let found = (report, solver.solution().unwrap().clone());
-        let left = residual((&grid, nu), &g, &friction, &[], (&found.0, &found.1));
-        assert!(left <= 1.001e-6, "{nu} {creepage:?}: {left}");
+        let slip_residual = residual((&grid, nu), &g, &friction, &[], (&found.0, &found.1));
+        assert!(slip_residual <= 1.001e-6, "{nu} {creepage:?}: {slip_residual}");
     }
 }
 
@@ -189,8 +190,8 @@ fn one_element_rolls_in_any_direction_with_any_creepage() {
             let (xi, eta) = (2e-5 * (0.7 * f64::from(k)).cos(), 2e-5 * (0.7 * f64::from(k)).sin());
             let step = Friction { rolling_direction: angle, ..rolling([xi, eta], 1e-3) };
             let (report, found) = run(&mut solver(&grid, nu), &[g], &step, 1e-6);
-            let left = residual((&grid, nu), &[g], &step, &[], (&report, &found));
-            assert!(left <= 1.001e-6, "{nu} {k}: {left} {:?}", found.traction);
+            let slip_residual = residual((&grid, nu), &[g], &step, &[], (&report, &found));
+            assert!(slip_residual <= 1.001e-6, "{nu} {k}: {slip_residual} {:?}", found.traction);
         }
     }
 }
@@ -231,8 +232,11 @@ fn steady_rolling_cancelled_at_any_callback_leaves_feasible_tractions() {
                 .unwrap();
             let solution = solver.solution().unwrap();
             assert!(solution.traction.iter().zip(&g).all(|(q, g)| q[0].hypot(q[1]) <= *g), "{cancel}");
-            let left = residual((&grid, NU), &g, &friction, &[], (&report, solution));
-            assert!((left - report.certificate.residual).abs() <= 1e-9 * (1.0 + left), "{cancel}: {left} {report:?}");
+            let slip_residual = residual((&grid, NU), &g, &friction, &[], (&report, solution));
+            assert!(
+                (slip_residual - report.certificate.residual).abs() <= 1e-9 * (1.0 + slip_residual),
+                "{cancel}: {slip_residual} {report:?}"
+            );
             if end == Outcome::Converged {
                 break;
             }

@@ -36,10 +36,10 @@ fn membranes_meet_the_conditions() {
             let mut solver = Solver::new(grid, coated.clone(), true, &Threads::One);
             let (report, solution) = run(&mut solver, &g, &friction, 1e-7);
             let sums = |by: (f64, f64), q: &[Vector], u: &mut [Vector]| dense::apply(&coated, &grid, by, q, u);
-            let left = residual_by(sums, &grid, &g, &friction, &none, (&report, &solution));
+            let slip_residual = residual_by(sums, &grid, &g, &friction, &none, (&report, &solution));
             let certificate = report.certificate;
-            println!("{thickness} {mu} {part}: {left:e} {certificate:?} products {}", report.products);
-            assert!(left <= 1.01e-7, "{thickness} {mu} {friction:?}: {left:e}");
+            println!("{thickness} {mu} {part}: {slip_residual:e} {certificate:?} products {}", report.products);
+            assert!(slip_residual <= 1.01e-7, "{thickness} {mu} {friction:?}: {slip_residual:e}");
             sides = [sides[0].max(certificate.stick_count), sides[1].max(certificate.slip_count)];
             most = most.max(report.products);
         }

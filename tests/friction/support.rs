@@ -95,7 +95,7 @@ pub fn residual_by(
     sums(by, before, &mut u_before);
     add_layer(grid, friction, (0.0, 0.0), q, &mut u);
     add_layer(grid, friction, by, before, &mut u_before);
-    let (mut left, mut rigid, mut displaced, mut count) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    let (mut residuals, mut rigid, mut displaced, mut count) = (Vec::new(), Vec::new(), Vec::new(), 0);
     let (mut gap, mut work, mut rounding) = (0.0, 0.0, 0.0);
     for i in 0..n {
         let Coefficient::Uniform(mu) = friction.coefficient else { panic!("one coefficient") };
@@ -127,7 +127,7 @@ pub fn residual_by(
         work += bound * length(w);
         // The sums of the test and the library's products differ by the round-off of coefficients, transforms and sums, 1e-12 of their terms.
         rounding += 1e-12 * bound * (length(w) + length(u[i]) + length(u_before[i]));
-        left.push(length(rest));
+        residuals.push(length(rest));
         rigid.push(length(w));
         displaced.push(length(if is_steady { [u[i][0] - u_before[i][0], u[i][1] - u_before[i][1]] } else { u[i] }));
     }
@@ -142,5 +142,5 @@ pub fn residual_by(
         Motion::Shift | Motion::SteadyRolling => rms(rigid.into_iter(), count).max(rms(displaced.into_iter(), count)),
         _ => rms(rigid.into_iter(), count),
     };
-    rms(left.into_iter(), count) / scale
+    rms(residuals.into_iter(), count) / scale
 }

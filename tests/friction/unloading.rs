@@ -52,8 +52,8 @@ fn tractions_relax_however_large_they_were() {
             let (solver, gap) = solved(&scene, &what);
             let (p, q) = (&solver.state().p, &solver.friction().expect("tractions").traction);
             let pressed = |i: usize| p[i] > 0.0;
-            let left: Vec<Vector> = (0..grid.len()).map(|i| [before[0][i], before[1][i]]).collect();
-            let (now, then) = (displaced(&grid, 0.0, q), displaced(&grid, by, &left));
+            let previous: Vec<Vector> = (0..grid.len()).map(|i| [before[0][i], before[1][i]]).collect();
+            let (now, then) = (displaced(&grid, 0.0, q), displaced(&grid, by, &previous));
             let (mut lost, mut scale) = (0.0, 0.0);
             for i in (0..grid.len()).filter(|&i| pressed(i)) {
                 let bound = MU * p[i];

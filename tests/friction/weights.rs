@@ -36,9 +36,9 @@ fn forces_are_sums_of_weighted_tractions() {
                 let (report, solution) = run(&mut solver, &case.bound, &friction, 1e-6);
                 let none = vec![[0.0; 2]; case.grid.len()];
                 let place = (&case.grid, case.nu);
-                let left = residual(place, &case.bound, &friction, &none, (&report, &solution));
+                let slip_residual = residual(place, &case.bound, &friction, &none, (&report, &solution));
                 // The tolerance of the solve, and 1e-9 for the different round-off of direct sums and FFT products.
-                assert!(left <= 1.001e-6, "{seed} {motion:?} {part}: {left}");
+                assert!(slip_residual <= 1.001e-6, "{seed} {motion:?} {part}: {slip_residual}");
                 let carried: f64 = case.bound.iter().sum::<f64>() * area;
                 for k in 0..2 {
                     let terms = solution.traction.iter().zip(&weights[k]).map(|(q, weight)| weight * q[k]);
@@ -52,8 +52,8 @@ fn forces_are_sums_of_weighted_tractions() {
                 let prescribed = force.map(|force| Prescribed::Force(0.7 * force));
                 let next = Friction { previous: Previous::Kept, prescribed, ..friction };
                 let (report, after) = run(&mut solver, &case.bound, &next, 1e-6);
-                let left = residual(place, &case.bound, &next, &solution.traction, (&report, &after));
-                assert!(left <= 1.001e-6, "{seed} {motion:?} {part}, the next step: {left}");
+                let slip_residual = residual(place, &case.bound, &next, &solution.traction, (&report, &after));
+                assert!(slip_residual <= 1.001e-6, "{seed} {motion:?} {part}, the next step: {slip_residual}");
             }
         }
     }

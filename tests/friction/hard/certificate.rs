@@ -94,7 +94,7 @@ fn residual(case: &Case, motion: Motion, g: &[f64], q: &[Vector], creepage: Vect
     let before: Vec<Vector> = if is_steady { q.to_vec() } else { (0..q.len()).map(given).collect() };
     let u = displace(case, q, 0.0);
     let u_before = displace(case, &before, if motion == Motion::Shift { 0.0 } else { case.grid.dx });
-    let [mut left, mut rigid, mut displaced] = [const { Vec::new() }; 3];
+    let [mut residuals, mut rigid, mut displaced] = [const { Vec::new() }; 3];
     let mut largest = 0.0f64;
     for i in (0..q.len()).filter(|&i| g[i] > 0.0) {
         let w = rigid_slip(case, motion, i, creepage);
@@ -106,7 +106,7 @@ fn residual(case: &Case, motion: Motion, g: &[f64], q: &[Vector], creepage: Vect
             let along = (s[0] * outward[0] + s[1] * outward[1]).min(0.0);
             rest = [0, 1].map(|k| s[k] - along * outward[k]);
         }
-        left.push(length(rest));
+        residuals.push(length(rest));
         rigid.push(length(w));
         displaced.push(length(if is_steady { [0, 1].map(|k| u[i][k] - u_before[i][k]) } else { u[i] }));
     }
@@ -118,7 +118,7 @@ fn residual(case: &Case, motion: Motion, g: &[f64], q: &[Vector], creepage: Vect
         _ => rms(&rigid).max(f64::EPSILON.sqrt() * rms(&displaced)),
     };
     let part = |value: f64| if value == 0.0 { 0.0 } else { value / scale };
-    (part(rms(&left)), part(ROUND_OFF * largest))
+    (part(rms(&residuals)), part(ROUND_OFF * largest))
 }
 
 /// Describes the first bound or prescribed force that does not hold. `None`: all of them hold.
