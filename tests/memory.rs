@@ -1,4 +1,4 @@
-//! A failure of any allocation is a status, and no memory leaks.
+//! If an allocation fails, whichever it is, the call returns a status. No memory leaks.
 
 #[path = "handles/limited_memory.rs"]
 mod limited_memory;

@@ -132,7 +132,7 @@ fn every_bad_guess_and_output_is_refused() {
             refused(row, through, handle);
         }
     }
-    // After the refusals the handle still solves.
+    // The handle can still solve after all refusals.
     for through in [Through::SolverSolve, Through::SolverSolveBatch] {
         let mut call = Call::new();
         assert_eq!(call.run(through, handle).0, CONTACT_NORMAL_OK);

@@ -11,7 +11,7 @@ use std::ptr::null_mut;
 use crate::call::{Call, Through};
 use contact_normal::ffi::*;
 
-/// The calls that solve.
+/// The functions of the C ABI that solve a scene.
 const SOLVES: [Through; 3] = [Through::Solve, Through::SolverSolve, Through::SolverSolveBatch];
 
 /// A handle that is freed at the end of its test.

@@ -5,7 +5,7 @@ use std::ptr::{null, null_mut};
 
 use contact_normal::ffi::*;
 
-/// Elements of the scene.
+/// The numbers of elements of the scene in x and y.
 pub const MX: usize = 6;
 pub const MY: usize = 5;
 const N: usize = MX * MY;
@@ -68,7 +68,7 @@ pub struct Call {
     pub table: Vec<f64>,
     /// Row tables: one table for each loaded row.
     pub tables: Vec<f64>,
-    /// Values per element, of a layer or of limits.
+    /// One value per element, for a layer or for limits.
     pub each: Vec<f64>,
     /// The patch of each element.
     pub patch: Vec<i32>,

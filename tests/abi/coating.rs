@@ -86,7 +86,7 @@ fn the_compliance_of_a_wave_is_that_of_one_material_where_the_layer_is() {
     for k in [1e150, 1e155, 1e200] {
         close(ask(&coating(1.0, 1.0, 0.3), k), 0.7 / k);
     }
-    // The compliance overflows.
+    // A compliance that overflows is refused.
     assert_eq!(ask(&coating(1.0, 1e-300, 0.3), 1e-300).0, CONTACT_NORMAL_NOT_FINITE);
     // SAFETY: NULL is allowed, and refused.
     let status = unsafe { contact_normal_coating_compliance(&coating(1.0, 1e3, 0.3), 500.0, 0.25, 1.0, null_mut()) };

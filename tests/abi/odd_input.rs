@@ -112,7 +112,7 @@ fn a_batch_refuses_friction_that_continues() {
 /// A name, and a change of a valid call.
 type Change = (&'static str, fn(&mut Call));
 
-/// Unusual input that is allowed.
+/// Changes that make unusual but valid input.
 #[rustfmt::skip]
 const ACCEPTED: &[Change] = &[
     ("default options", |c| c.without = "options"),

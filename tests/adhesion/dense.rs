@@ -17,7 +17,7 @@ use super::certificate::{displacements, traction};
 /// The tangent of a state, by a dense matrix.
 #[derive(Clone, Copy, Debug)]
 pub struct Tangent {
-    /// dF/dapproach.
+    /// The stiffness dF/dapproach.
     pub stiffness: f64,
     /// Whether the energy has a minimum at the approach.
     pub is_least: bool,

@@ -9,7 +9,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Adhesion, Bodies, Load, Scene, Work};
 use contact_normal::solver::{self, Options, Outcome, Solver};
 
-/// E* of the sphere.
+/// The modulus E* of the sphere in these units.
 pub const MODULUS: f64 = 0.75;
 
 /// Two bodies with a given E*, one of them rigid.

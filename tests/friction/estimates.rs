@@ -14,7 +14,7 @@ fn moved(m: usize, nu: f64, friction: impl Fn(f64, [f64; 2]) -> Friction<'static
     moved_between(m, Bodies::same(1.0, nu), friction)
 }
 
-/// [`moved`] for any bodies.
+/// As [`moved`], for any two bodies.
 fn moved_between(m: usize, bodies: Bodies, friction: impl Fn(f64, [f64; 2]) -> Friction<'static>) -> (Report, f64) {
     let d = 2.37 / m as f64;
     let grid = Grid::new(m, m, d, d).unwrap();

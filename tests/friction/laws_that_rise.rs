@@ -106,7 +106,7 @@ fn falling(draw: &mut Draw, w: f64) -> FrictionLaw {
     FrictionLaw::new(fall, (0.4, 0.6), w * draw.between(0.5, 30.0), 1.0)
 }
 
-/// Pressures of a dome on mx x my elements.
+/// The pressures of a dome on mx x my elements, at least 0.05 everywhere.
 fn dome(mx: usize, my: usize) -> Vec<f64> {
     let part = |k: usize, m: usize| ((k as f64 - 0.5 * (m as f64 - 1.0)) / (0.6 * m as f64)).powi(2);
     (0..mx * my).map(|i| (1.0 - part(i % mx, mx) - part(i / mx, my)).max(0.05)).collect()

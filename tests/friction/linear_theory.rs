@@ -20,7 +20,7 @@ const TABLE: [(f64, [[f64; 3]; 3]); 5] = [
 
 /// The coefficients C11, C22 and C23 from computed forces: `Fx = -G a b C11 xi, Fy = -G a b C22 eta - G (a b)^(3/2) C23 phi`.
 fn slopes(ratio: f64, nu: f64, m: usize) -> [f64; 3] {
-    // a = 1.
+    // The semi-axis in the rolling direction is a = 1.
     let b = 1.0 / ratio;
     let (grid, g) = ellipse(b, m);
     let compliance = Compliance { shear: 1.0, poisson: nu, unlike: 0.0 };

@@ -38,7 +38,7 @@ fn any_force_below_mu_n_is_reached_whatever_the_spin() {
     }
 }
 
-/// Motions and forces of all sizes.
+/// Creepages, spins and forces from 1e-12 to full slip and beyond, with names.
 fn extremes(grid: &Grid, g: &[f64]) -> [(&'static str, Friction<'static>); 12] {
     [
         ("partial slip", rolling([-0.3, 0.2], 0.2)),

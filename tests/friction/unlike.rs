@@ -68,7 +68,7 @@ pub const RIGID_ON_SOFT: Bodies = Bodies { shear_modulus: [1.0, f64::INFINITY], 
 /// The coefficients of a pair of bodies on m x m elements of 0.25, for all offsets.
 pub struct Sums {
     m: usize,
-    /// Azz, Axx, Axy, Ayy, Axz, Ayz.
+    /// Of each offset: Azz, Axx, Axy, Ayy, Axz, Ayz.
     coefficients: Vec<[f64; 6]>,
 }
 

@@ -9,7 +9,7 @@ use contact_normal::ffi::{contact_normal_release, CONTACT_NORMAL_OK, CONTACT_NOR
 struct Limited;
 
 thread_local! {
-    /// The least number of bytes of an allocation that counts.
+    /// An allocation counts against the limits if it has at least this many bytes.
     static LARGE: Cell<usize> = const { Cell::new(usize::MAX) };
     /// How many more allocations of `LARGE` bytes or more succeed.
     static ALLOWED: Cell<u64> = const { Cell::new(u64::MAX) };

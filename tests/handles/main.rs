@@ -57,7 +57,7 @@ fn held(handle: &Handle) -> Option<(Vec<f64>, Vec<i32>)> {
 
 type Effect = fn(&mut Call);
 
-/// No effect, and each effect of a scene.
+/// Names of effects, and the changes of a call that add them; the first one adds none.
 const EFFECTS: [(&str, Effect); 7] = [
     ("none", |_| {}),
     ("influence", |c| _ = c.use_table()),

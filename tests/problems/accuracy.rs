@@ -112,7 +112,7 @@ fn targets_of_the_largest_pressure_and_the_area_are_kept() {
             "{name}: {}",
             off(measures.corrected_area, surface.area)
         );
-        // The force alone needs fewer elements.
+        // An accuracy of the force alone needs fewer elements.
         let alone = outcome_of(&surface, &Accuracy::new(1e-2));
         assert!(
             alone.solver.expect("a result").grid().len() < outcome.solver.expect("a result").grid().len(),
@@ -183,7 +183,7 @@ fn what_is_not_to_be_had_is_said() {
     ] {
         let row = list(&surface("r^2"), accuracy, Quantity::Force, &[1e-3])[0];
         assert_eq!(row.obstacle, Some(obstacle), "{row:?}");
-        // The row still has the costs.
+        // A row with an obstacle still has the grid and its costs.
         let grid = row.grid.expect("a grid");
         assert!(row.seconds > Some(0.0) && row.bytes > bytes && grid.len() as u64 > elements, "{row:?}");
     }

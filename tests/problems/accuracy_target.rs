@@ -35,7 +35,7 @@ fn by_approach(accuracy: Accuracy) -> Refinement {
     solved(Load::Approach(case::APPROACH), accuracy, &Options::default())
 }
 
-/// Asserts a converged result on 16 x 16 elements.
+/// Asserts that the result is the converged one on the first grid of 16 x 16 elements.
 fn assert_start_is_kept(outcome: &Refinement) {
     assert_eq!(grid_of(outcome).mx, START, "{}", outcome.reason);
     // With 16 x 16 elements the error of the force is some percent (tests/problems/hertz.rs).

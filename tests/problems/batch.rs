@@ -135,7 +135,7 @@ struct Batch {
 
 const UNTOUCHED: f64 = -77.0;
 
-/// `T` as its `_init` leaves it.
+/// A `T` with the defaults that its `_init` function writes.
 fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
     let mut value = std::mem::MaybeUninit::uninit();
     // SAFETY: `_init` fills a whole struct.

@@ -51,7 +51,7 @@ fn values_of_bodies_apart_are_exact() {
     assert!(rows[1].error.is_some_and(|error| error > 0.0), "{rows:?}");
 }
 
-/// One element lies lower than all others.
+/// A surface whose only high point is one element, 0.1 above the rest.
 fn spike() -> Vec<f64> {
     let mut h = vec![0.1; M * M];
     h[10 * M + 10] = 0.0;
@@ -111,7 +111,7 @@ fn prices_of_bodies_apart_are_those_of_their_grid() {
     assert_eq!((rows[0].obstacle, rows[0].grid), (Some(Obstacle::Singular), None), "{rows:?}");
 }
 
-/// With one iteration no grid is solved.
+/// If only one iteration is allowed, no grid of the price list is solved, and the list must say so.
 #[test]
 fn a_price_list_without_a_solved_grid_says_so() {
     let h = ball();

@@ -127,7 +127,7 @@ fn coatings() -> [Coating; 4] {
         Coating { layers: [layer(0.3, 0.1, 0.3), None] },
         Coating { layers: [None, layer(0.8, 0.02, 0.45)] },
         Coating { layers: [layer(0.1, 0.4, 0.0), layer(0.5, 1.0, 0.2)] },
-        // Stiffer than the body below.
+        // A coating that is stiffer than the body below it.
         Coating { layers: [layer(0.2, 9.0, 0.3), None] },
     ]
 }

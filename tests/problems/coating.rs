@@ -308,7 +308,7 @@ fn preconditioners_are_positive_and_as_good_as_they_were_measured() {
     }
 }
 
-/// `G1/G2`, `(nu1, nu2)`, and pairs `(rho, F)`.
+/// Values of a radial function: `G1/G2`, `(nu1, nu2)`, and pairs `(rho, F)`.
 type Radial = (f64, [f64; 2], &'static [(f64, f64)]);
 
 /// The radial function F_1 of a coating, computed with 30 digits (mpmath: composite quadrature of `(B - 1) J0`).

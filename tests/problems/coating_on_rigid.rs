@@ -201,7 +201,7 @@ fn by_waves(nu: f64, t: f64, p: &[f64], m: usize, d: f64, period: usize) -> Vec<
             let response = responses[j.min(period - j) * (half + 1) + i.min(period - i)] / (period * period) as f64;
             (re, im) = (re * response, im * response);
             for y in 0..m {
-                // e^{i ky y}
+                // Multiplies by e^{i ky y}.
                 let (a, b) = (re * c[y] - im * s[y], re * s[y] + im * c[y]);
                 for x in 0..m {
                     u[y * m + x] += a * cx[x] - b * sx[x];

@@ -17,7 +17,7 @@ struct Dashpots {
     share: f64,
     r: Vec<f64>,
     t: Vec<f64>,
-    /// `[element][branch]`.
+    /// The displacements of the dashpots, `[element][branch]`.
     q: Vec<Vec<f64>>,
     w: Vec<f64>,
 }

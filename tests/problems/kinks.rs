@@ -43,7 +43,7 @@ fn the_largest_pressure_at_a_kink_has_no_error() {
             assert!(!is_known, "{slope} on {m}: {pressure}");
         }
     }
-    // The peak grows by E* s ln 2/(2 pi) for each doubling.
+    // The peak at a kink grows by E* s ln 2/(2 pi) for each doubling of the elements, s the jump of the slope (here 2 times 0.02).
     let [coarse, fine] = [64, 4096].map(|m| largest(&bent(m, 1, 0.02), true).1);
     let modulus = 1.0 / (1.0 - 0.3);
     let expected = 6.0 * modulus * 0.04 * 2.0_f64.ln() / (2.0 * std::f64::consts::PI);

@@ -98,7 +98,7 @@ fn tolerances_and_targets_lie_below_1() {
     names(solve_to_accuracy(&scene, &Options::default(), &high, None, None).map(drop), "max_pressure_target is 1");
     let high = Accuracy::new(0.1).with(Quantity::ContactArea, 5.0);
     names(solve_to_accuracy(&scene, &Options::default(), &high, None, None).map(drop), "contact_area_target is 5");
-    // The largest valid tolerance.
+    // The largest valid tolerance, just below 1, is accepted.
     assert!(solve(&scene, &Options { tolerance: 1.0f64.next_down(), ..Options::default() }).is_ok());
 }
 

@@ -252,7 +252,7 @@ fn a_period_much_longer_than_the_contact_is_as_good_as_none() {
         })
         .collect();
     let radius: f64 = 8.0;
-    // F = 4 E* a^3/(3 R)
+    // Hertz: F = 4 E* a^3/(3 R), with E* = 1 and R = 1000.
     let load = Load::Force(4.0 * radius.powi(3) / 3000.0);
     let options = Options { tolerance: 1e-9, ..Options::default() };
     let (free, _, _) = solve(&Scene::new(grid, &h, bodies(), load), &options).unwrap();
@@ -380,7 +380,7 @@ fn what_a_period_cannot_do_is_refused_by_name() {
     let (_, stop, report) =
         solve(&scene(grid, &hole, (true, true), Load::Approach(mean + 0.1)), &Options::default()).unwrap();
     assert_eq!((stop, report.measures.contact_count), (Outcome::Converged, 63));
-    // A handle keeps its period.
+    // A handle keeps its period, and refuses a scene with another one.
     let mut solver = Solver::new(&by_force, &Options::default()).unwrap();
     assert!(solver.solve(&by_force, &Options::default(), None, None).is_ok());
     let other = Scene { period: Some(Period { x: true, y: false }), ..by_force };

@@ -33,7 +33,7 @@ pub fn rough(m: usize, part: usize, seed: u64) -> Vec<f64> {
     h
 }
 
-/// u = A p.
+/// The displacements u = A p by direct sums over coefficients that are even in x and y.
 pub fn displacements(scene: &Scene<'_>, p: &[f64]) -> Vec<f64> {
     let (mx, my) = (scene.grid.mx, scene.grid.my);
     let coefficients = scene.coefficients().unwrap();

@@ -51,7 +51,7 @@ fn shifted() -> Friction<'static> {
     Friction { prescribed, ..Friction::new(MU) }
 }
 
-/// The largest von Mises stress on the axis, and its depth.
+/// The largest von Mises stress on the axis, and its depth, by a search over the closed form.
 fn on_the_axis() -> (f64, f64) {
     let (a, p0) = (radius_of_contact(), 2.0 / std::f64::consts::PI * modulus() * radius_of_contact() / RADIUS);
     let at = |z: f64| {

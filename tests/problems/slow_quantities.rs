@@ -93,7 +93,7 @@ fn a_limit_beside_friction() {
     assert!(row.error.is_some(), "{row:?}");
 }
 
-/// Forces of steady rolling of unlike bodies jump from grid to grid.
+/// The forces of steady rolling of unlike bodies jump from grid to grid, which the estimate must cover.
 #[test]
 fn steady_rolling_of_unlike_bodies() {
     let bodies = Bodies { shear_modulus: [0.5, 0.9], poisson_ratio: [0.3, 0.25] };

@@ -99,7 +99,7 @@ fn relaxation_is_in_the_bill_of_a_step_from_rest() {
         // The approach rises linearly from rest during the step, so that G_k has the mean of exp(-t/t_k) as a factor.
         let s = 1.0 / (1.0 - 5.0 / 8.0 * (1.0 - (1.0 - f64::exp(-x)) / x));
         let (value, change) = (rows[0].value.expect("a value"), rows[0].change.expect("a change"));
-        // Both solves have a tolerance of a hundredth of the target.
+        // The solves of the bill have a tolerance of a hundredth of the target.
         assert!((change / value - (s - 1.0)).abs() <= 2e-4 * s, "{dt}: {change} {value} {s}");
         assert_eq!((rows[0].verdict, rows[2].change), (verdict, Some(0.0)), "{rows:?}");
         let neglected = Neglected::of(&scene, &Options::default(), 1e-2, None).expect("a scene");

@@ -71,7 +71,7 @@ fn coefficient(kx: i64, ky: i64) -> f64 {
     (corner(x + 0.5, y + 0.5) + corner(x - 0.5, y - 0.5) - corner(x + 0.5, y - 0.5) - corner(x - 0.5, y + 0.5)) / PI
 }
 
-/// u = A p.
+/// The displacements u = A p, by a convolution of the test's own.
 pub fn displacements(m: usize, p: &[f64]) -> Vec<f64> {
     let n = (2 * m).next_power_of_two();
     let offset = |k: usize| if k <= n / 2 { k as i64 } else { k as i64 - n as i64 };

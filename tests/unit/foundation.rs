@@ -20,7 +20,7 @@ pub struct Foundation {
     pub later: f64,
     /// r = dt/T, the step relative to the relaxation time.
     pub step: f64,
-    /// Whether v begins with that of the last step.
+    /// Whether the step continues from the v of the last step.
     pub continues: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Unit tests of `solver/iterate.rs`.
+//! Unit tests of `solver/iterate.rs`: the descent lowers the energy in each cycle, from any pressures.
 
 use super::*;
 use crate::contact::{lowest, NonNegative, Problem, State};

@@ -215,7 +215,7 @@ fn a_handle_that_is_solving_refuses_to_be_used_or_freed() {
         assert_refused(outcome, CONTACT_NORMAL_INVALID_ARGUMENT, &["solver", "in use", "callback"]);
     }
     assert_eq!(call.pressure, undisturbed.pressure);
-    // The handle still solves.
+    // The handle can still solve after the refused calls.
     call.options.known.progress = None;
     assert_eq!(call.run(Through::SolverSolve, handle.0), (CONTACT_NORMAL_OK, String::new()));
     assert_eq!(call.pressure, undisturbed.pressure);

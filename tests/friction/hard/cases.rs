@@ -12,7 +12,7 @@ pub const MOTIONS: [(&str, Motion); 3] = [
     ("STEADY_ROLLING", Motion::SteadyRolling),
 ];
 
-/// A pair of arrays, in x and in y.
+/// Two arrays: the components in x and in y of each element.
 type Pair = [Vec<f64>; 2];
 
 /// A scene that owns its arrays.
@@ -26,7 +26,7 @@ pub struct Case {
     pub mu: Vec<f64>,
     pub prescribed: [Prescribed; 2],
     pub spin: f64,
-    /// The tractions before the step.
+    /// The previous tractions.
     pub previous: Option<Pair>,
     pub rigid_slip: Option<Pair>,
     /// The status with which the library must refuse the case. `None`: the library must solve it.

@@ -14,7 +14,7 @@ use contact_normal::solver::{solve, Options, Outcome};
 
 use super::cases::Case;
 
-/// Tractions of more than this part of the bound slip (docs/friction.md).
+/// Elements whose traction exceeds this part of the bound count as slipping (docs/friction.md).
 const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
 
 /// Round-off of coefficients, transforms and sums in a displacement, relative to the sum of absolute values.
@@ -27,7 +27,7 @@ pub enum Verdict {
     Solved { residual: f64, products: f64 },
     /// Status OK, but the conditions do not hold.
     Wrong { residual: f64, products: f64, why: String },
-    /// Another status.
+    /// The solve ended with another status than OK.
     Stopped { outcome: Outcome, residual: f64, products: f64 },
     /// Refused with the expected status.
     Refused(&'static str),

@@ -30,7 +30,7 @@ impl Found {
     }
 }
 
-/// The recomputed measures.
+/// The measures of the certificate, recomputed from a result.
 #[derive(Clone, Copy, Debug)]
 pub struct Recomputed {
     /// `||h - approach + A p|| / ||h - approach||` over C.
@@ -46,12 +46,12 @@ pub struct Recomputed {
     pub round_off: f64,
 }
 
-/// Solves a case by one method with the default options.
+/// Solves a case by one method, with the default options otherwise.
 pub fn run(case: &Case, method: Method) -> Result<Found> {
     run_with(case, &Options { method, ..Options::default() })
 }
 
-/// Solves a case.
+/// Solves a case with these options.
 pub fn run_with(case: &Case, options: &Options) -> Result<Found> {
     let (solver, stop, report) = solve(&case.scene(), options)?;
     Ok(found(&solver, stop, report))
@@ -62,7 +62,7 @@ pub fn found(solver: &Solver, stop: Outcome, report: Report) -> Found {
     Found::of(stop, report, solver.state())
 }
 
-/// u = A p.
+/// The displacements u = A p of a case, by a product of the test.
 pub fn displace(case: &Case, p: &[f64]) -> Vec<f64> {
     let influence: Coefficients = case.scene().coefficients().unwrap();
     let mut u = vec![0.0; p.len()];
@@ -75,7 +75,7 @@ pub fn displace(case: &Case, p: &[f64]) -> Vec<f64> {
     u
 }
 
-/// Recomputes the measures.
+/// Recomputes the measures of a result. Asserts that exterior elements carry no pressure and that elements in contact have a surface.
 pub fn recompute(case: &Case, found: &Found) -> Recomputed {
     let u = displace(case, &found.p);
     let (mut r2, mut h2, mut outside, mut gaps, mut work, mut count) = (0.0, 0.0, 0.0f64, 0.0, 0.0, 0.0f64);
