@@ -1,4 +1,4 @@
-//! A failure of any allocation is a status, and no memory leaks.
+//! If an allocation fails, whichever it is, the call returns a status. No memory leaks.
 
 #[path = "handles/limited_memory.rs"]
 mod limited_memory;
@@ -28,7 +28,7 @@ fn scene(m: usize, h: &mut Vec<f64>) -> contact_normal_scene {
     scene
 }
 
-/// Kept memory belongs to the process: one test at a time counts it.
+/// Lets one test at a time run, because each counts the memory that the library keeps for the process.
 fn alone() -> MutexGuard<'static, ()> {
     static ONE: Mutex<()> = Mutex::new(());
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
@@ -42,7 +42,7 @@ const METHODS: [i32; 5] = [
     CONTACT_NORMAL_METHOD_PROJECTED_CG,
 ];
 
-/// Solves with `allowed` successful large allocations. Without a result the outputs must be unchanged.
+/// Solves with `allowed` successful large allocations. Asserts that without a result the outputs are unchanged. Returns the status.
 fn solve_with(scene: &contact_normal_scene, options: &contact_normal_options, allowed: u64, p: &mut [f64]) -> i32 {
     let mut fields = initialised(contact_normal_fields_init);
     fields.pressure = p.as_mut_ptr();
@@ -73,7 +73,8 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
     assert_eq!(status, CONTACT_NORMAL_OK);
     (influence.cx, influence.cy, influence.coefficients) = (m as i32, m as i32, table.as_ptr());
     let with_table = contact_normal_scene { influence: &influence, ..scene };
-    // Few rows, so that the tables are not gigabytes, but enough that plans of rows are small: the FFT crate cannot refuse.
+    // There are few rows, so that the row tables do not take gigabytes, but enough rows that the FFT plans of a row are small: the FFT crate cannot
+    // refuse a lack of memory.
     let my = 64;
     let mx = m * m / my;
     let mut values = vec![0.0; my * my * 2 * mx];
@@ -95,17 +96,17 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
         for &method in methods {
             let mut options = initialised(contact_normal_options_init);
             (options.method, options.tolerance, options.max_cycles) = (method, 1e-3, 2);
-            // The first solve of a kind keeps memory for the process.
+            // The first solve of each kind leaves memory that the library keeps for the process.
             assert!(solve_with(scene, &options, u64::MAX, &mut vec![0.0; m * m]) >= 0);
             let what = format!("{name}, method {method}");
             let refused = limited_memory::until_enough(&what, |allowed| {
                 let mut p = vec![-7.0; m * m];
                 let held = limited_memory::held();
                 let status = solve_with(scene, &options, allowed, &mut p);
-                // The message of the last refusal is kept for the thread.
+                // The thread keeps the message of the last refusal, less than 500 bytes.
                 let kept = limited_memory::held() - held;
                 assert!(kept.abs() < 500, "{what}, {allowed} allocations: {kept} bytes are held");
-                // Two cycles suffice.
+                // The two cycles that are allowed need not converge: any status of a result counts as enough memory.
                 status.min(CONTACT_NORMAL_OK)
             });
             assert!(refused > 8, "{what}: {refused} refusals");
@@ -116,7 +117,7 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
 #[test]
 fn an_absurd_size_is_out_of_memory() {
     let _alone = alone();
-    // Zeros without pages behind them; the operator would be even larger.
+    // The distances are zeros without memory pages behind them. The operator would be even larger.
     let m = 8_000;
     let bytes = m * m * size_of::<f64>();
     let flags = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | libc::MAP_NORESERVE;
@@ -156,7 +157,7 @@ fn ten_thousand_handles_leave_nothing_behind() {
             assert_eq!(status, CONTACT_NORMAL_OK);
             contact_normal_solver_free(handle);
         }
-        // The first handle of each kind keeps memory for the process.
+        // The first handle of each kind leaves memory that the library keeps for the process.
         if number == METHODS.len() {
             held = limited_memory::held();
         }
@@ -164,11 +165,11 @@ fn ten_thousand_handles_leave_nothing_behind() {
     assert_eq!(limited_memory::held(), held, "bytes are held after 10^4 handles");
 }
 
-/// The bytes of a handle after a solve: those of its report, and those that it holds.
+/// The bytes of a handle after a solve: those that its report says, and those that it holds.
 fn bytes_of(scene: &contact_normal_scene, what: &str) -> [f64; 2] {
     let options: contact_normal_options = initialised(contact_normal_options_init);
     let mut bytes = [0.0; 2];
-    // Plans of transforms belong to the thread: the second time they exist.
+    // Plans of transforms belong to the thread. When the loop is repeated, they exist already.
     for _ in 0..2 {
         // SAFETY (all): structs with their arrays, a handle of ours, and NULL.
         contact_normal_release();
@@ -204,7 +205,7 @@ fn reported_bytes_grow_by_what_friction_holds() {
             let without = bytes_of(&contact_normal_scene { friction: null(), ..scene }, &what);
             let with = bytes_of(&contact_normal_scene { friction: &friction, ..scene }, &what);
             let [reported, held] = [0, 1].map(|i| with[i] - without[i]);
-            // Blocks may be larger than requested, and the reserved room of lists is not counted.
+            // Memory blocks may be larger than requested, and the report does not count the reserved room of lists: hence 10 %.
             assert!((reported / held - 1.0).abs() <= 0.1, "{what}: {reported} bytes reported, {held} held");
         }
     }

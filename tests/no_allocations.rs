@@ -1,5 +1,5 @@
-//! After a first pass over the scenes further solves on the same solver allocate nothing. Allocations are counted on the solving thread, the only one
-//! with threads = 1. (With more threads the queues of the pool grow now and then.)
+//! After a first pass over some scenes, further solves on the same solver allocate nothing. Allocations are counted on the solving thread, which is
+//! the only one with threads = 1. (With more threads the queues of the pool grow now and then.)
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -58,7 +58,7 @@ fn allocations(work: impl FnOnce()) -> u64 {
 const STEEL: Bodies = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.28; 2] };
 const LOADS: [Load; 3] = [Load::Approach(0.02), Load::Force(2000.0), Load::Approach(0.025)];
 
-/// A wavy ball that touches at `(shift, 0)` elements from the middle of m x m elements. Below 64 x 64 there are no windows.
+/// The distances of a wavy ball that touches at `(shift, 0)` elements from the middle of m x m elements. Grids below 64 x 64 have no windows.
 fn surface(m: usize, shift: f64) -> Vec<f64> {
     let middle = 0.5 * (m as f64 - 1.0);
     (0..m * m)
@@ -73,7 +73,7 @@ fn grid(m: usize) -> Grid {
     Grid::new(m, m, 0.25, 0.2).expect("a grid")
 }
 
-/// Solves all surfaces with all loads three times on one solver; returns the allocations of the third pass.
+/// Solves all surfaces with all loads three times on one solver. Returns the number of allocations of the third pass.
 fn third_pass(m: usize, shifts: &[f64], table: Option<&Table>, options: &Options) -> u64 {
     let surfaces: Vec<Vec<f64>> = shifts.iter().map(|&shift| surface(m, shift)).collect();
     let scenes: Vec<Scene<'_>> = surfaces
@@ -81,7 +81,7 @@ fn third_pass(m: usize, shifts: &[f64], table: Option<&Table>, options: &Options
         .flat_map(|h| LOADS.map(|load| Scene { influence: table.cloned(), ..Scene::new(grid(m), h, STEEL, load) }))
         .collect();
     let mut solver = Solver::new(&scenes[0], options).expect("a solver");
-    // A solver with a table does not read that of later scenes.
+    // A solver that was set up with a table does not read the tables of later scenes.
     let pressure = vec![100.0; m * m];
     let contact: Vec<bool> = (0..m * m).map(|i| (i % m).abs_diff(m / 2) < 6 && (i / m).abs_diff(m / 2) < 7).collect();
     let guess = Guess { pressure: &pressure, contact: &contact };
@@ -161,7 +161,8 @@ fn coefficients_that_are_not_symmetric_solve_again_without_allocating() {
 #[test]
 fn a_window_that_moves_allocates_nothing_and_one_of_another_size_does() {
     let options = Options::default();
-    // The contact area moves by 8 elements.
+    // Solves for balls that touch at these places. Returns the allocations when all are solved again, and when they are solved with a larger
+    // approach.
     let moves = |shifts: &[f64]| {
         let surfaces: Vec<Vec<f64>> = shifts.iter().map(|&shift| surface(96, shift)).collect();
         let scenes: Vec<Scene<'_>> =

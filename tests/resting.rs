@@ -1,5 +1,5 @@
-//! Arrays that rest between their uses give the same bits. This is a separate program, because the size from which arrays rest is a setting of the
-//! process.
+//! The memory of large arrays returns to the system while a solve does not need them (they rest). This changes no bit of a result. The test is a
+//! separate program, because the size from which arrays rest is a setting of the process.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
@@ -22,8 +22,8 @@ fn bits_of_solves(h: &[f64], m: usize) -> Vec<u64> {
 }
 
 #[test]
-fn what_rests_between_its_uses_changes_no_bit() {
-    // On a window, and on the whole grid.
+fn arrays_that_rest_between_their_uses_change_no_bit() {
+    // The contact is solved on a window, and on the whole grid.
     for reach in [0.3, 1.2] {
         let m = 80;
         let from_centre = |i: usize| (i as f64 + 0.5) / (0.5 * m as f64) - 1.0;

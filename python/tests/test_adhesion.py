@@ -50,7 +50,7 @@ class Adhesion(unittest.TestCase):
             said = re.search(r"the force is off by (\S+) of the one that is given", found.message)
             self.assertEqual(said is not None, lack > 1e-6, (found.message, lack))
             if said:
-                # Messages have six digits.
+                # Numbers in messages have six digits.
                 self.assertLess(abs(float(said[1]) / lack - 1.0), 5.1e-6)
                 told += 1
         self.assertGreater(told, 0)
@@ -71,7 +71,7 @@ class Adhesion(unittest.TestCase):
         for wrong, named in (({}, "no work"), ({"work": 1.0, "rho": 1.0}, "rho"), ({"work": 1.0, "law": "LINEAR"}, "LINEAR")):
             with self.assertRaisesRegex(ValueError, named):
                 solve(approach=0.2, adhesion=wrong)
-        # Tractions of unlike bodies change the pressures.
+        # Refused, because tractions of unlike bodies would change the pressures.
         with self.assertRaisesRegex(contact_normal.ContactNormalError, "unlike"):
             solve(approach=0.2, friction=SHIFT, e_star=None, shear_modulus=(0.375, 0.75), poisson_ratio=0.0)
 
@@ -107,7 +107,7 @@ class Adhesion(unittest.TestCase):
         found = contact_normal.to_accuracy(H, D, D, target=3e-3, **scene)
         self.assertEqual(found.status, contact_normal.OK)
         self.assertAlmostEqual(found.force / rows.last("force").value, 1.0, delta=rows.last("force").error / abs(found.force))
-        # In contact p = q - sigma; the residual of both is 1e-6.
+        # In contact p = q - sigma, up to the residuals of 1e-6.
         differences = (found.contact_pressure - found.attraction - found.pressure)[found.contact]
         self.assertLess(abs(differences).max(), 1e-5 * found.contact_pressure.max())
         with self.assertRaisesRegex(contact_normal.ContactNormalError, "name a range"):

@@ -19,7 +19,7 @@ def solve(h=H, **given):
 
 class Arguments(unittest.TestCase):
     def test_integers_do_not_wrap(self):
-        # 10^12 modulo 2^32 is negative; 2^32 + 5 would be 5.
+        # Without a check, 10^12 would wrap to a negative number of 32 bits, and 2^32 + 5 to 5.
         for name, value in (("max_cycles", 10**12), ("max_cycles", 2**32 + 5), ("threads", 2**32 + 1), ("coarsest", -(2**31) - 1)):
             with self.assertRaisesRegex(ValueError, f"{name} is {value}; it must fit into 32 bits"):
                 solve(**{name: value})
@@ -41,7 +41,7 @@ class Arguments(unittest.TestCase):
             solve(layer=np.ma.masked_where(H > 0.2, 1e-6 * H))
         with self.assertRaisesRegex(TypeError, "pressure is a masked array"):
             solve(pressure=masked)
-        # A handle copies its effects before they are checked.
+        # A handle copies its effects before they are checked, and must not lose the masks.
         effects = {"layer": np.ma.masked_where(H > 0.2, 1e-6 * H), "shear_modulus": np.ma.array([1e3, 9e9], mask=[False, True]),
                    "patches": (np.ma.masked_where(H > 0.2, (H > 0.1).astype(int)), np.eye(2))}
         for name, value in effects.items():
@@ -139,7 +139,7 @@ class Arguments(unittest.TestCase):
         for name in ("influence", "row_tables"):
             with self.assertRaisesRegex(TypeError, rf"friction\['{name}'\] is 5; it must be \(xx, yy, xy\)"):
                 solve(friction={"coefficient": 0.3, name: 5})
-        # Old versions of numpy make object arrays of them.
+        # Old versions of numpy make object arrays of such lists.
         with self.assertRaisesRegex((ValueError, TypeError), "h has (parts of different shapes|dtype object)"):
             solve([[0.0, 1.0], [2.0]])
         with self.assertRaisesRegex((ValueError, TypeError), "influence has (parts of different shapes|dtype object)"):

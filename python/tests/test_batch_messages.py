@@ -30,7 +30,7 @@ class Batches(unittest.TestCase):
             self.assertEqual(late[0].status, cn.ITERATION_LIMIT)
 
     def test_texts_of_warnings_are_told_apart(self):
-        # The last text contains a semicolon.
+        # The texts are separated by semicolons, and the last one contains one itself.
         told = "border; steep; a larger memory"
         self.assertEqual(messages_of([cn.OK] * 3, told, [1, 64, 65]), ["border", "steep; a larger memory", told])
         self.assertEqual(messages_of([cn.OK] * 2, "one", [0, 5]), ["", "one"])
@@ -55,7 +55,7 @@ class Remarks(unittest.TestCase):
         self.assertRegex(self.told(small), "^the motion of friction is not given: it is a SHIFT")
         self.assertRegex(self.told([[0.0, -0.1, 0.0]], **rolling), "^a creepage of 0.1 is this part of the rolling speed")
         self.assertRegex(self.told([[0.0, 0.0, 0.0], [0.0, 0.0, -0.2]], **rolling), "^a spin of 0.2 makes a creepage of 0.16")
-        # Entries replace the creepages of the friction. Prescribed forces are no creepages.
+        # No remark: entries replace the creepages of the friction, and prescribed forces are no creepages.
         for quiet in (self.told(small, **rolling), self.told([[0.0, 0.0, 0.0]]), self.told(small, motion="SHIFT"), self.told(np.zeros((0, 3)), **rolling),
                       self.told(small, creepage=(0.2, 0.0), **rolling), self.told([[1e-3, 0.0, 0.0]], force=(0.0, None))):
             self.assertEqual(quiet, "")

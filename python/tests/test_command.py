@@ -87,7 +87,7 @@ class Commands(unittest.TestCase):
         e_star = MODULUS / (1 - RATIO)
         largest = (6 * FORCE * e_star**2 / (np.pi**3 * RADIUS**2)) ** (1 / 3)
         approach = (9 * FORCE**2 / (16 * RADIUS * e_star**2)) ** (1 / 3)
-        # With some 14 elements per radius errors are of the order of (1/14)^2.
+        # The contact has some 14 elements per radius, so that errors are of the order of (1/14)^2.
         self.assertAlmostEqual(float(values["largest pressure"].removesuffix(" MPa")) / largest, 1.0, delta=1 / 14**2)
         self.assertAlmostEqual(float(values["approach"].removesuffix(" mm")) / approach, 1.0, delta=1 / 14**2)
 
@@ -102,12 +102,12 @@ class Commands(unittest.TestCase):
             found = self.solved(self.folder / name, *BALL)
             self.assertEqual((found["dx"], found["dy"], found["pressure"].shape), (DX, DY, (MY, MX)))
             h = self.undeformed(found)
-            # Round-off of displacements of some .01 with distances of .1: far below 1e-12.
+            # The round-off of displacements of some .01 and distances of .1 is far below 1e-12.
             np.testing.assert_allclose(h - h.min(), gap, atol=1e-12)
         np.save(self.npy, gap)
         h = self.undeformed(self.solved(self.npy, *BALL, "--gap"))
         np.testing.assert_allclose(h - h.min(), gap, atol=1e-12)
-        # A gap that the package writes has its element sizes.
+        # The file of a gap that the package writes has the element sizes.
         Gap(gap, DX, DY).write(self.folder / "gap.txt")
         h = self.undeformed(self.solved(self.folder / "gap.txt", *BALL[4:], "--gap"))
         np.testing.assert_allclose(h - h.min(), gap, atol=1e-12)
@@ -121,7 +121,7 @@ class Commands(unittest.TestCase):
         code, _, told = called("solve", self.npy, *BALL, "--faults", "--level", "plane", "-o", self.folder / "level.npz")
         self.assertEqual((code, "spike" in told), (0, True), told)
         level = np.load(self.folder / "level.npz")
-        # A ball off the middle has a mean slope, so that levelling moves its top; its contact area does not change.
+        # A ball off the middle has a mean slope, so that levelling moves its top. Its contact area does not change.
         self.assertFalse(level["contact"][3, 50])
         self.assertAlmostEqual(level["pressure"].max() / plain["pressure"].max(), 1.0, delta=1e-2)
 
@@ -138,7 +138,7 @@ class Commands(unittest.TestCase):
         np.save(self.npy, turned)
         plain = self.solved(self.npy, *BALL)["pressure"]
         np.save(self.npy, turned[::-1].T)
-        # The first index is that of x, and y decreases along the second one.
+        # In this file the first index is that of x, and y decreases along the second one.
         np.testing.assert_array_equal(self.solved(self.npy, *BALL, "--axes", "xy", "--top-first")["pressure"], plain)
 
     def test_negative_numbers_may_have_exponents(self):
@@ -184,7 +184,7 @@ class Commands(unittest.TestCase):
             np.save(self.npy, np.where(inside, hole, HEIGHTS))
             found = self.solved(self.npy, *BALL, *options)
             self.assertEqual((found["contact"][17, 30], found["contact"][17, 31]), (False, True))
-        # A fill value that is not named is a pit in heights: the contact does not change.
+        # A fill value that is not given by --hole is a pit in the heights, which does not change the contact.
         self.assertEqual(called("solve", self.npy, *BALL)[0], 0)
         np.save(self.npy, np.full((4, 4), np.nan))
         code, _, told = called("solve", self.npy, *BALL)
@@ -194,7 +194,7 @@ class Commands(unittest.TestCase):
         pair = self.solved(self.npy, *BALL[:6], "--young-modulus", "210000", "70000", "--poisson-ratio", "0.28", "0.33")
         e_star = 1 / ((1 - 0.28**2) / 210000 + (1 - 0.33**2) / 70000)
         same = self.solved(self.npy, *BALL[:6], "--e-star", e_star)
-        # Both have a residual of 1e-6; errors of pressures are up to a hundred times larger.
+        # Both solves have a residual of 1e-6. Errors of pressures are up to a hundred times larger.
         np.testing.assert_allclose(pair["pressure"], same["pressure"], atol=1e-4 * same["pressure"].max())
         self.assertGreater(same["pressure"].max(), 600.0)
         self.assertEqual(self.solved(self.npy, *BALL, "--pressure-limit", "600")["pressure"].max(), 600.0)
@@ -251,7 +251,7 @@ class Commands(unittest.TestCase):
         np.testing.assert_allclose(h - h.min(), 2 * (HEIGHTS.max() - HEIGHTS), atol=1e-12)
 
     def test_pictures_and_progress(self):
-        # Instruments write such a picture beside their heights.
+        # Instruments write a picture of this name beside their heights. It must not be overwritten.
         photo = self.npy.with_suffix(".png")
         photo.write_bytes(b"a photo")
         code, _, told = called("solve", self.npy, *BALL, "--plot", "--progress")
@@ -265,10 +265,10 @@ class Commands(unittest.TestCase):
         code, out, _ = called("prices", self.npy, *BALL, "--targets", "1e-2", "1e-15")
         rows = [line.split() for line in out.splitlines()]
         self.assertEqual((code, rows[0][:2], rows[1][0], rows[2][0]), (0, ["relative", "error"], "1.0e-02", "1.0e-15"))
-        # With eight elements the error of the force is small enough (docs/accuracy.md).
+        # Eight elements suffice for this error of the force (docs/accuracy.md).
         self.assertGreaterEqual(int(rows[1][1]), 8)
         self.assertTrue(out.rstrip().endswith("below round-off"), out)
-        # Effects are passed to the library: it refuses a negative compliance.
+        # Effects reach the library, which refuses a negative compliance.
         code, out, told = called("prices", self.npy, *BALL, "--layer", "-1e-12")
         self.assertNotEqual(code, 0)
         self.assertIn("compliance", told)
@@ -286,8 +286,8 @@ class Commands(unittest.TestCase):
         code, out, _ = called("creep-table", "--xi", "0:0.02:3", "--eta", "0", "--phi", "0", "--elements", "35")
         rows = [dict(zip(out.splitlines()[0].split(), map(float, line.split()))) for line in out.splitlines()[1:]]
         self.assertEqual((code, [row["xi"] for row in rows], rows[0]["force_x"]), (0, [0.0, 0.01, 0.02], 0.0))
-        # Kalker's linear theory: C11 of a circle is 4.12 to 4.27 for Poisson ratios of .25 to .3. The effect of saturation is 1.4 %, the first-order error with
-        # 1/35 a few percent.
+        # Kalker's linear theory: C11 of a circle is 4.12 to 4.27 for Poisson ratios of .25 to .3. Saturation changes the force by 1.4 %, and elements
+        # of 1/35 of the contact by a few per cent.
         self.assertLess(abs(rows[1]["force_x"] / (-0.01 * 4.2) - 1), 0.1)
 
     @unittest.skipIf(os.name == "nt", "its program is a shell script")

@@ -74,7 +74,7 @@ class Copies(unittest.TestCase):
     def test_a_pickle_holds_no_more_than_the_arrays(self):
         big = np.zeros((200, 200))
         result = cn.solve(big, D, D, approach=0.0, friction={"coefficient": 0.3, "rigid_slip": (big, big)}, **STEEL)
-        # Three fields, four of friction, two of 32-bit integers: 64 bytes an element.
+        # The result has three fields, four of friction, and two of 32-bit integers: 64 bytes an element.
         self.assertLess(len(pickle.dumps(result)), 66 * big.size)
 
     def test_errors(self):
@@ -172,7 +172,7 @@ class Logs(unittest.TestCase):
             found = lines.setdefault(level, [])
             cn.set_log(lambda at, text, found=found: found.append((at, text)), level)
             refuse_to_converge()
-        # An early stop is information, not a warning, because the status reports it too.
+        # An early stop is logged as information, not as a warning, because the status reports it, too.
         self.assertEqual({at for at, _ in lines[cn.LOG_INFO]}, {cn.LOG_INFO})
         self.assertRegex(lines[cn.LOG_INFO][0][1], "^Norm on 24 x 24: IterationLimit after 2 cycles")
         self.assertEqual((lines[cn.LOG_WARNING], lines[cn.LOG_OFF]), ([], []))

@@ -27,7 +27,7 @@ class Corrupt(unittest.TestCase):
             self.assertEqual(surface.read(path, dx=10.0, dy=10.0).z.ndim, 2)
             return False
         except ValueError as error:
-            # Others are of heights, as those of a wrong dtype, which has no file.
+            # Other errors are those of heights, such as a wrong dtype, which do not depend on the file.
             self.assertTrue(name in str(error) or str(error).startswith("values "), error)
             return True
         except TypeError as error:

@@ -35,13 +35,13 @@ class Reads(unittest.TestCase):
                 table.wheel_rail((1e-3, 0.0), 0.0, semi_axes=(6.0, 4.0), normal_force=82e3, **{**given, "shear_modulus": modulus})
         with self.assertRaisesRegex(TypeError, "semi_axes is 6.0; it must be a pair"):
             table.wheel_rail((1e-3, 0.0), 0.0, semi_axes=6.0, normal_force=82e3, **given)
-        # A wheel without load has no ellipse.
+        # A wheel without load has no contact ellipse, and no force.
         found = table.wheel_rail((1e-3, 0.0), 0.0, semi_axes=([6.0, 0.0], [4.0, 0.0]), normal_force=[82e3, 0.0], **given)
         alone = table.wheel_rail((1e-3, 0.0), 0.0, semi_axes=(6.0, 4.0), normal_force=82e3, **given)
         np.testing.assert_array_equal(found, np.transpose([np.ravel(alone), np.zeros(3)]))
         np.testing.assert_array_equal(table.wheel_rail((1e-3, 0.0), 0.0, semi_axes=(0.0, 0.0), normal_force=0.0, **given), np.zeros(3))
         self.assertTrue(np.isnan(table.wheel_rail((1e-3, 0.0), 0.0, semi_axes=(np.nan, 4.0), normal_force=82e3, **given)).all())
-        # Without load the table needs no circle and no creepages of 0.
+        # For a wheel without load the table need not have a circle, or creepages of 0.
         table = cn.creep_force_table(xi=[0.1, 0.3], eta=[0.1, 0.2], phi=[0.1, 0.2], axis_ratio=[1.5, 2.0], elements=9)
         modulus = 82e3 / 8.2e4 / 100.0
         motion, given = ((0.2 * modulus, 0.1 * modulus), 0.1 * modulus / 10.0), {"semi_axes": (10.0 * 1.75**0.5, 10.0 / 1.75**0.5), **given, "hold": False}
@@ -50,7 +50,7 @@ class Reads(unittest.TestCase):
         alone = table.wheel_rail(*motion, normal_force=82e3, **given)
         self.assertGreater(abs(np.ravel(alone)).min(), 0.0)
         np.testing.assert_array_equal(found, np.transpose([np.ravel(alone), np.zeros(3)]))
-        # Without load lengths, and Poisson ratios outside the table, have no effect.
+        # For a wheel without load, semi-axes and Poisson ratios outside the table have no effect.
         lifted = {**given, "semi_axes": ([given["semi_axes"][0], np.nan], [given["semi_axes"][1], 1e200]), "poisson_ratio": [table.poisson_ratio[0], 0.4]}
         with np.errstate(all="raise"):
             for of_lifted in (np.nan, 1e200, 1e-200):
@@ -64,7 +64,7 @@ class Errors(unittest.TestCase):
         axes = {"xi": [0.0, 2e-3], "eta": [0.0], "phi": [0.0]}
         row = surface(1, 33, 2e3)
         found = cn.creep_force_table(surface=row, **axes)
-        # With four times as many elements along the row, of the same width.
+        # The reference has four times as many elements along the row, of the same width.
         x = (np.arange(132) - 65.5) * 0.075
         fine = cn.creep_force_table(surface={**row, "h": 0.005 * x[None, :] ** 2, "dx": 0.075}, **axes)
         off = abs(found.force_x - fine.force_x).max() / 600.0

@@ -39,17 +39,18 @@ class Entries(unittest.TestCase):
             entries = [(xi, eta, PHI[p]) for eta in ETA for xi in XI]
             found = direct(TABLE.axis_ratio[r], TABLE.poisson_ratio[n], entries).reshape(3, 4, 3)
             table = np.stack([values[r, n, p] for values in (TABLE.force_x, TABLE.force_y, TABLE.moment)], axis=-1)
-            # A residual of 1e-4 leaves some 1e-5 of mu N (docs/friction.md).
+            # A residual of 1e-4 leaves an error of some 1e-5 of mu N (docs/friction.md).
             np.testing.assert_allclose(table, found, atol=1e-4)
 
     def test_small_creepages_follow_kalkers_coefficients(self):
-        # A circle, nu = .25 (Kalker 1990, appendix E): C11 4.12, C22 3.67, C23 1.47; forces converge with first order.
+        # A circle with nu = .25 has C11 = 4.12, C22 = 3.67, C23 = 1.47 (Kalker 1990, appendix E). The error of forces is of first order in the
+        # elements, so that they are extrapolated from two grids.
         small, slopes = 0.002, []
         for elements in (40, 80):
             table = cn.creep_force_table(xi=[0.0, small], eta=[0.0, small], phi=[0.0, small], poisson_ratio=0.25, elements=elements)
             x, y, moment = (values[0, 0] / small for values in (table.force_x, table.force_y, table.moment))
             slopes.append(np.array([-x[0, 0, 1], -y[0, 1, 0], -y[1, 0, 0], moment[0, 1, 0]]))
-        # C23 twice: the force by spin, and the moment by lateral creepage. Kalker's values are accurate to some 1 %.
+        # C23 appears twice: in the force by spin, and in the moment by lateral creepage. Kalker's values are accurate to some 1 %.
         np.testing.assert_allclose(2.0 * slopes[1] - slopes[0], [4.12, 3.67, 1.47, 1.47], rtol=0.015)
 
     def test_the_estimated_error_bounds_that_to_a_finer_grid(self):
@@ -57,7 +58,7 @@ class Entries(unittest.TestCase):
         coarse, fine = (cn.creep_force_table(elements=elements, **axes) for elements in (17, 68))
         radius = 1.0  # c, the radius of a circle of the area of the contact
         off = np.sqrt((coarse.force_x - fine.force_x) ** 2 + (coarse.force_y - fine.force_y) ** 2 + ((coarse.moment - fine.moment) / radius) ** 2)
-        # The finer grid has a quarter of the error.
+        # The finer grid is the reference. It has a quarter of the error.
         self.assertLess((off / coarse.error).max(), 1.0)
         # The estimate is not much too large.
         self.assertLess(np.median(coarse.error), 4.0 * np.median(off))
@@ -82,7 +83,7 @@ class Work(unittest.TestCase):
             for status in (cn.ITERATION_LIMIT, cn.STAGNATED):
                 with mock.patch.object(_creep_force_plane, "friction_batch", unsolved_on(elements, status)):
                     table = cn.creep_force_table(**self.AXES)
-                # The second entry of each plane.
+                # Only the second entry of each plane has the status.
                 np.testing.assert_array_equal(table.status[..., 0, 1], status)
                 np.testing.assert_array_equal(table.status[..., 0, 0], cn.OK)
         # The status of the fine grid takes precedence.
@@ -145,7 +146,7 @@ class Interpolation(unittest.TestCase):
         at = {"axis_ratio": 2.0, "poisson_ratio": 0.25}
         low, high = (TABLE.force_x[2, 0, 0, 1, k] for k in (1, 2))
         np.testing.assert_allclose(TABLE.forces(0.15, 0.0, 0.0, **at)[0], 0.75 * low + 0.25 * high, rtol=1e-12)
-        # In the logarithm of a/b: the middle of 1 and 2 is sqrt(2).
+        # Interpolation is linear in the logarithm of a/b: half way between 1 and 2 is sqrt(2).
         middle = TABLE.forces(0.1, 0.0, 0.0, axis_ratio=np.sqrt(2.0), poisson_ratio=0.25)[0]
         np.testing.assert_allclose(middle, 0.5 * (TABLE.force_x[1, 0, 0, 1, 1] + TABLE.force_x[2, 0, 0, 1, 1]), rtol=1e-12)
         self.assertEqual(TABLE.forces(np.zeros((2, 1)), np.zeros(3), 0.0, **at)[0].shape, (2, 3))
@@ -157,7 +158,7 @@ class Interpolation(unittest.TestCase):
             TABLE.forces(0.1, 0.0, 0.0)
 
     def test_units_of_a_wheel_on_a_rail(self):
-        # Steel, an ellipse of 6 x 3 mm: the same from friction_batch in mm and N.
+        # A steel wheel with an ellipse of 6 x 3 mm has the forces of friction_batch in mm and N.
         a, b, force, mu, shear = 6.0, 3.0, 80e3, 0.3, 82000.0
         creepage, spin, n = (0.25 * mu * force / (shear * a * b), 0.0), 0.0, 17
         x = (np.arange(n * 4) + 0.5) * 2.0 / (n * 4) - 1.0
@@ -190,7 +191,7 @@ class Surfaces(unittest.TestCase):
             scaled = ellipse.forces(xi, 0.0, 0.5, axis_ratio=a / b)
             off = np.hypot(table.force_x[0, 0, 1, 0, k] / bound - scaled[0], table.force_y[0, 0, 1, 0, k] / bound - scaled[1])
             self.assertLess(off, table.error[0, 0, 1, 0, k] + scaled[3])
-            # If all three change their signs, so do forces and moment.
+            # If both creepages and the spin change their signs, so do the forces and the moment.
             there = table.forces(-xi / unit, -0.15 / unit, -0.5 / (unit * c))
             np.testing.assert_array_equal(there[0], -table.force_x[0, 0, 1, 1, k])
             np.testing.assert_array_equal(there[2], -table.moment[0, 0, 1, 1, k])

@@ -31,11 +31,11 @@ class DecimalCommas(unittest.TestCase):
     def test_maps_are_refused(self):
         for digits in (1, 2, 3):
             for between in (",", ", ", ",\t"):
-                # Of two digits few numbers have other lengths.
+                # With two digits behind the comma few numbers differ in length.
                 for rows in (HEIGHTS, abs(HEIGHTS), HEIGHTS[:, :1], HEIGHTS[:12, : 2 if digits == 1 else 20]):
                     with self.subTest(digits=digits, between=between, shape=rows.shape), self.assertRaisesRegex(ValueError, f"{TOLD}|begin with zeros between its commas"):
                         self.read(text_of(rows, digits, between))
-        # Heights of one digit before the comma, and few of them: blanks part the pairs.
+        # Few heights, of one digit before the comma: blanks separate the pairs of digits.
         with self.assertRaisesRegex(ValueError, TOLD):
             self.read("1,2, 3,4\n5,6, 7,8\n")
         with self.assertRaisesRegex(ValueError, "columns changed.*decimal commas need semicolons"):
@@ -57,7 +57,7 @@ class DecimalCommas(unittest.TestCase):
                         np.testing.assert_array_equal(self.read(text).z, values)
             for between in (",", ", "):
                 np.testing.assert_allclose(self.read("\n".join(between.join(f"{value:.1f}" for value in row) for row in HEIGHTS)).z, HEIGHTS, atol=0.051)
-            # The same digits; a point says that commas part them.
+            # With the same digits, a decimal point shows that the commas separate numbers.
             text = text_of(HEIGHTS, 1, ",")
             self.assertEqual(self.read(text.replace(",", ".0,", 1)).z.shape, (40, 40))
             np.testing.assert_allclose(self.read(text_of(HEIGHTS, 1, ";")).z, HEIGHTS, atol=0.051)

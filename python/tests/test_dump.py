@@ -53,7 +53,7 @@ class Dumps(unittest.TestCase):
         solve = lambda: contact_normal.solve(H, 0.5, 0.5, force=500.0, max_cycles=1, tolerance=1e-18, dump=path + "-%n", **STEEL)
         solve()
         number = int(os.listdir(self.folder.name)[0].rpartition("-")[2])
-        # Processes on other machines may have the same number.
+        # Processes on other machines may have the same number, so that their unfinished files must stay.
         others = Path(self.folder.name) / f"contact_normal.{os.getpid()}.{number + 1}.0.part"
         others.write_text("not finished")
         solve()

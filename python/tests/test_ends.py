@@ -26,7 +26,7 @@ x = np.arange({M}) - {0.5 * (M - 1)}
 h = 0.002 * (x[None, :] ** 2 + x[:, None] ** 2)
 given = {GIVEN}
 """
-    # A fault would make the process hang: the limit ends it.
+    # If there is a fault, the process hangs. The time limit ends it.
     return subprocess.run([sys.executable, "-c", begin + script], capture_output=True, text=True, timeout=300, **given)
 
 
@@ -36,7 +36,7 @@ class Process(unittest.TestCase):
         self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, printed, ""))
 
     def test_what_is_ended_with_the_interpreter_solves(self):
-        # One solve is long enough for a worker. The other one, of a single element, has a message.
+        # One solve is so long that a worker makes it. The other one, of a single element, has a message.
         self.check("""
 def steps():
     try:
@@ -64,7 +64,7 @@ time.sleep(0.3)
                 self.assertEqual((ended.returncode, ended.stdout), (0, ""), ended.stderr)
 
     def test_a_daemon_whose_messages_are_logged(self):
-        # Whether the solves begin before the callable is set or after.
+        # The solves may begin before the callable is set, or after.
         hear, stop = "cn.set_log(lambda level, text: None)", "cn.set_log(None)"
         for before, after in (("", hear), (hear, ""), (hear, stop)):
             self.check(f"""
@@ -152,7 +152,7 @@ if __name__ == "__main__":
 
 class Bars(unittest.TestCase):
     def test_where_there_is_no_terminal(self):
-        # With tqdm, which writes as soon as it is made, and without.
+        # Bars by tqdm, which writes as soon as it is made, and by the package itself.
         for tqdm in ("None", "types.SimpleNamespace(tqdm=lambda file, **more: file.write(''))"):
             with self.subTest(tqdm):
                 ended = process(f"""
@@ -187,7 +187,7 @@ class Memory(unittest.TestCase):
             with self.assertRaises(Enough):
                 cn.solve(H, 0.1, 0.1, progress=enough, **GIVEN)
         end = time.monotonic() + 10.0
-        # A worker may still be ending the last call.
+        # A worker thread may still be ending the last call.
         while held() > before and time.monotonic() < end:
             time.sleep(0.05)
         self.assertEqual(held(), before)

@@ -23,7 +23,7 @@ class FrictionBatches(unittest.TestCase):
         for i in (0, 7, 19):
             x, y, spin = ENTRIES[i]
             one = cn.solve(H, D, D, force=1000.0, friction={**FRICTION, "creepage": (x, y), "spin": spin}, **STEEL)
-            # With a residual of 1e-6 forces have an error of some 1e-7 of mu N (docs/friction.md).
+            # A residual of 1e-6 leaves an error of some 1e-7 of mu N in the forces (docs/friction.md).
             np.testing.assert_allclose(batch.force[i], one.report["tangential_force"], atol=1e-5 * 300)
             np.testing.assert_allclose(batch.traction[i].sum(axis=(1, 2)) * D * D, batch.force[i], atol=1e-9 * 300)
             self.assertLess(np.count_nonzero(batch.stick_slip[i] != one.stick_slip), 3)
@@ -74,7 +74,7 @@ class FrictionBatches(unittest.TestCase):
                 for one in told:
                     bar._due = 0.0
                     bar.tell(one)
-            # The cycles of the normal problem, if there is one; then the entries.
+            # The bar is told of the cycles of the normal problem, if there is one, and then of the entries.
             self.assertEqual(drawn, [0.0] * (len(told) - 5) + [0.2, 0.4, 0.6, 0.8, 1.0])
             self.assertEqual(len(told) > 5, normal["h"] is not None)
 

@@ -21,13 +21,13 @@ import profiles_to_gap  # noqa: E402
 class Data(unittest.TestCase):
     def test_heights(self):
         kept = np.load(ROOT / "data" / "heights" / "ground.npy")
-        # Heights are rounded to 1e-8; a transform of another machine may round to the next one.
+        # Heights are rounded to 1e-8. The FFT of another machine may lead to the next rounded value.
         np.testing.assert_allclose(kept, heights_to_gap.ground(), rtol=0, atol=2e-8)
 
     def test_profiles(self):
         for name, made in (("arcs.prr", profiles_to_gap.made_rail()), ("arcs.prw", profiles_to_gap.made_wheel())):
             kept = profiles.read(ROOT / "data" / "profiles" / name)
-            # Written with seven digits behind the point.
+            # The profiles are written with seven digits behind the point.
             np.testing.assert_allclose(np.stack([kept.y, kept.z], axis=1), made, rtol=0, atol=1.01e-7)
 
     def test_arcs_are_those_of_their_radii(self):

@@ -19,14 +19,14 @@ STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
 M, D = 64, 0.1
 X = (np.arange(M) - 0.5 * (M - 1)) * D
 H = 0.2 * (X[None, :] ** 2 + X[:, None] ** 2)
-# Sweeps that hardly change the pressures, with billions of cycles.
+# Sweeps that hardly change the pressures, and billions of cycles: such a solve does not end by itself.
 ENDLESS = {"method": "MULTIGRID", "smoother": "JACOBI", "relaxation": 1e-9, "max_cycles": 2**31 - 1}
 
 
 def setUpModule():
     if os.name == "nt":
         raise unittest.SkipTest("os.kill sends no signals on Windows: it ends the process")
-    # A shell lets background processes ignore SIGINT.
+    # A shell may start this process with SIGINT ignored, as a background process.
     unittest.addModuleCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
 
 
@@ -49,7 +49,7 @@ class Interrupts(unittest.TestCase):
 
     def test_a_solve_with_progress(self):
         told = []
-        # Within the callback or outside, many times, because an exception in a callback of ctypes may be lost.
+        # The signal arrives within the callback or outside. It is sent many times, because an exception in a callback of ctypes may be lost.
         for _ in range(20):
             timer = send(seconds=0.05)
             with self.assertRaises(KeyboardInterrupt):
@@ -90,7 +90,7 @@ class Interrupts(unittest.TestCase):
 
     def test_a_solver_waits_for_what_was_given_up(self):
         def slow(watched, told, user, call=_callbacks.Watched._call):
-            # It sleeps in C, so that no signal wakes it.
+            # The callback sleeps in C, so that no signal wakes it.
             ctypes.CDLL(None).usleep(400000)
             return call(watched, told, user)
 
@@ -188,7 +188,7 @@ class Threads(unittest.TestCase):
         self.addCleanup(_calls._given_up.discard, call)
         with self.assertRaises(KeyboardInterrupt):
             call.result(Lost())
-        # The end of the process would wait for this call.
+        # Otherwise the end of the process would wait for this call.
         self.assertNotIn(call, _calls._given_up)
         call.make()
         self.assertIsNone(call._error)
@@ -216,7 +216,7 @@ class Threads(unittest.TestCase):
     def test_a_fork_has_no_threads_of_ours(self):
         cn.solve(H, D, D, force=1000.0, **STEEL)
         with warnings.catch_warnings():
-            # From Python 3.12 on a fork of a process with threads has a warning.
+            # From Python 3.12 on there is a warning if a process with threads is forked.
             warnings.simplefilter("error")
             child = os.fork()
             if child == 0:
@@ -236,7 +236,7 @@ given = {({"force": 1000.0, **ENDLESS, **STEEL})}
 def send():
     threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
 """ + script
-        # If the process waits for a solve, it hangs and does not fail: the runner of the tests then ends it.
+        # If the process waits for a solve, it hangs instead of failing. The runner of the tests then ends it.
         return subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, **process)
 
     def test_the_process_ends_after_an_interrupt(self):

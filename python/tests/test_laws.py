@@ -20,7 +20,7 @@ def solved(**friction):
 
 class Laws(unittest.TestCase):
     def test_a_creep_curve_falls_beyond_its_maximum(self):
-        # CONTACT's example tractcurv printed these forces over .33 N, with elements that differ by 4e-4.
+        # The printed numbers are forces over .33 N from CONTACT's example tractcurv, whose elements differ by 4e-4.
         for creepage, printed in ((0.004, -0.6101), (0.016, -0.9445), (0.1, -0.7559)):
             found = solved(creepage=(creepage, 0.0), law=LAW)
             self.assertEqual((found.status, found.message), (cn.OK, ""))
@@ -34,7 +34,7 @@ class Laws(unittest.TestCase):
         first = solved(**shift)
         plastic = first.stick_slip == 3
         self.assertTrue(plastic.any())
-        # To the tolerance.
+        # At the yield limit tractions equal it, to the tolerance of the solve.
         np.testing.assert_allclose(np.hypot(*first.traction)[plastic], first.yield_limit[plastic], rtol=1e-5)
         self.assertTrue((first.yield_limit[plastic] > 100.0).all())
         again = solved(**shift, previous_traction=first.traction, previous_yield_limit=first.yield_limit)

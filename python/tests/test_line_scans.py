@@ -23,7 +23,7 @@ def scans(values, **given):
 class Scans(unittest.TestCase):
     def test_a_tilt_and_a_form_are_those_of_a_polynomial(self):
         for kind, degree in (("mean", 0), ("plane", 1), ("quadric", 2)):
-            # numpy.polyfit solves the same problem by singular values, to 1e-12 or so.
+            # The reference is numpy.polyfit, which solves the same problem by singular values, to about 1e-12.
             fitted = np.polyfit(X, SCAN, degree)[::-1]
             left = SCAN - np.polyval(fitted[::-1], X)
             slope, curvature = (*fitted, 0.0, 0.0)[1:3]

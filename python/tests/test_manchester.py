@@ -28,7 +28,7 @@ def rounding_of(part, y):
 
 class Profiles(unittest.TestCase):
     def test_the_parts_of_the_wheel_meet(self):
-        # A wrong digit would cause a step or a corner.
+        # A wrong digit of a coefficient would cause a step or a corner.
         for (end, part), (_, following) in zip(manchester.PARTS, manchester.PARTS[1:]):
             rounding = max(rounding_of(part, end), rounding_of(following, end))
             self.assertAlmostEqual(manchester.height(part, end), manchester.height(following, end), delta=rounding)
@@ -56,7 +56,7 @@ class Positions(unittest.TestCase):
         for row in manchester.PRINTED:
             roll, yaw = row.roll, row.yaw
             axle = manchester.position(row).rotation()[:, 1]
-            # The axle e_y, yawed about z, then rolled about x.
+            # The direction of the axle: e_y, yawed about z, then rolled about x.
             np.testing.assert_allclose(axle, (-math.sin(yaw), math.cos(yaw) * math.cos(roll), math.cos(yaw) * math.sin(roll)), atol=1e-15)
 
     def test_pressures_elements_and_approaches_are_those_of_the_benchmark(self):
@@ -64,16 +64,18 @@ class Positions(unittest.TestCase):
             with self.subTest(y=row.y):
                 result, approach = manchester.pressed(manchester.contact_point(row), row)
                 self.assertEqual(result.status, cn.OK)
-                # The force has four digits. Half of the last is 5e-4, which changes the pressure by a third of this: 0.02 %. The grids differ: the largest
-                # pressure may be half an element off the nearest centre. For a semi-ellipsoid with half-widths of ten and 16 elements it is lower there by 1 -
-                # sqrt(1 - 0.5^2/10^2 - 0.5^2/16^2) = 0.17 %. The rest, 0.1 %, is for the other program's surfaces between points.
+                # Three parts of the tolerance. The force has four digits; half of the last one is 5e-4, which changes the pressure by a third of
+                # this: 0.02 %. The grids differ: the largest pressure may be half an element off the nearest centre, where a semi-ellipsoid with
+                # half-widths of ten and 16 elements is lower by 1 - sqrt(1 - 0.5^2/10^2 - 0.5^2/16^2) = 0.17 %. The rest, 0.1 %, is for the other
+                # program's surfaces between points.
                 self.assertAlmostEqual(result.max_pressure / row.largest, 1.0, delta=0.003)
                 # The number of grid points in an oval of mean radius R at a random place has the variance 0.676 R (Kendall 1948, for circles). Three standard
                 # deviations of the difference of two such numbers:
                 deviation = math.sqrt(0.676 * math.sqrt(row.elements / math.pi))
                 self.assertLess(abs((result.contact > 0).sum() - row.elements), 3.0 * math.sqrt(2.0) * deviation)
-                # Half of the last digit; two thirds of that of the force; and the error of the least h of the other program's grid, half an element off the
-                # least one of the bodies: it is 1/n^2 of the 1.2 approaches at the border of our grid, n elements wide.
+                # Three parts of the tolerance: half of the last digit; two thirds of that of the force; and the error of the least h on the other
+                # program's grid, half an element off the least one of the bodies, which is 1/n^2 of the 1.2 approaches at the border of our grid, n
+                # elements wide.
                 rows, columns = result.contact.shape
                 force = half_of_last_digit(row.force) / row.force
                 delta = 0.5e-5 + (2.0 / 3.0 * force + 1.2 * (rows**-2 + columns**-2)) * row.approach
@@ -84,7 +86,8 @@ class Positions(unittest.TestCase):
             with self.subTest(y=row.y):
                 point = manchester.contact_point(row)
                 overlap = -point.clearance * math.cos(point.angle)
-                # z has four decimals; a roll lifts the left wheel by its distance from the middle; the approach has five decimals.
+                # The sum of three roundings: z has four decimals; the roll lifts the left wheel by its distance from the middle; and the approach has
+                # five decimals.
                 delta = 0.5e-4 + half_of_last_digit(row.roll) * 758.0 + 0.5e-5
                 self.assertAlmostEqual(overlap, row.approach, delta=1.1 * delta)
 

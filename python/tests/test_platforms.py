@@ -32,7 +32,7 @@ class Places(unittest.TestCase):
     package, prefix = Path("/clone/python/contact_normal"), Path("/prefix")
 
     def test_names(self):
-        # The name of a cdylib of cargo on each platform.
+        # The name that cargo gives a cdylib on each platform.
         for platform, built in (("linux", "libcontact_normal.so"), ("freebsd14", "libcontact_normal.so"),
                                 ("darwin", "libcontact_normal.dylib"), ("win32", "contact_normal.dll"), ("cygwin", "contact_normal.dll")):
             self.assertEqual(names(platform).built, built, platform)
@@ -70,7 +70,7 @@ class Places(unittest.TestCase):
                     _library.os.environ.pop("CONTACT_NORMAL_LIBRARY", None)
                     found = _library.candidates()
                     self.assertIn(str(place), found, platform)
-                    # find_library starts other programs.
+                    # find_library, which starts other programs, is not called if a file is found.
                     _library.ctypes.util.find_library.assert_not_called()
                     with mock.patch.object(_library, "places", return_value=[]):
                         self.assertEqual(_library.candidates(), [names(platform).installed], platform)

@@ -24,7 +24,7 @@ def colour_at(axes, x, y):
     axes.figure.canvas.draw()
     pixels = np.asarray(axes.figure.canvas.buffer_rgba())[..., :3].astype(int)
     column, row = axes.transData.transform((x, y))
-    # Rows of pixels are counted from above.
+    # Rows of pixels are counted from the top.
     return pixels[pixels.shape[0] - 1 - int(row), int(column)]
 
 
@@ -210,7 +210,7 @@ class Plots(unittest.TestCase):
         axes.figure.canvas.draw()
         outline = next(lines for lines in axes.collections if hasattr(lines, "get_segments"))
         points = 72.0 / axes.figure.dpi * axes.get_window_extent().width / 128
-        # The line covers both sides of the edge: half of the element remains visible.
+        # Half of the line is on either side of the edge, so that at least half of the element remains visible.
         self.assertLessEqual(outline.get_linewidths()[0], 0.5 * points)
         self.assertTrue(outline.get_rasterized() or len(outline.get_segments()) <= 4000)
 
@@ -219,7 +219,7 @@ class Plots(unittest.TestCase):
         with matplotlib_style(dark=True):
             axes = self.found.plot_traction()
             self.assertLess(sum(matplotlib.colors.to_rgb(axes.figure.get_facecolor())), 0.5)
-            # The exterior area is dark as well, but text is not.
+            # The exterior area is dark, too, but text is not.
             self.assertLess(axes.images[0].get_array()[0, 0].sum(), 1.5)
             self.assertGreater(sum(matplotlib.colors.to_rgb(axes.xaxis.label.get_color())), 2.0)
 

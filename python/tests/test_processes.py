@@ -14,7 +14,8 @@ import contact_normal as cn
 from contact_normal import _creep_force_table
 
 STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
-# The child has none of the parent's threads: waiting for them would never end. The limit is hundreds of times the solve, so that a hang is a failure.
+# The child has none of the parent's threads, and would wait for them for ever. The limit is hundreds of times the duration of the solve, so that a
+# hang is a failure.
 PATIENCE = 60
 
 
@@ -28,7 +29,7 @@ def forked(work):
     near, far = multiprocessing.get_context("fork").Pipe(duplex=False)
     process = multiprocessing.get_context("fork").Process(target=lambda: far.send(work()))
     process.start()
-    # Otherwise the end of a child that dies would not be seen.
+    # Without this the parent would not notice that a child has died.
     far.close()
     try:
         found = near.recv() if near.poll(PATIENCE) else None
@@ -43,7 +44,7 @@ def forked(work):
 
 @unittest.skipUnless(hasattr(os, "fork"), "there is no fork")
 class Forks(unittest.TestCase):
-    # With this number of elements threads share the work.
+    # The grid has so many elements that threads share the work.
     M = 281
     H = ball(M, 0.001 * (64 / M) ** 2)
     SIZE = 12.8 / M
@@ -95,8 +96,8 @@ class Threads(unittest.TestCase):
         self.assertEqual(found, expected)
 
     def test_python_goes_on_while_a_thread_solves(self):
-        # ctypes releases the interpreter's lock during a call, so that another thread runs. With the lock it would stand still for the whole time in the
-        # library, in each call. On a busy machine it may stand still in some.
+        # ctypes releases the interpreter's lock during a call, so that another thread runs. With the lock it would stand still in each call, for all
+        # the time in the library. On a busy machine it may stand still in some calls.
         self.assertTrue(any(self.longest_standstill() < 0.5 for _ in range(20)))
 
     def longest_standstill(self):

@@ -64,7 +64,7 @@ class Profiles(unittest.TestCase):
             np.testing.assert_allclose(left, right, atol=1e-8)
             for end, inwards in ((curve.t[0], step), (curve.t[-1], -step)):
                 self.assertAlmostEqual(2 * second(end + inwards) - second(end + 2 * inwards), 0.0, delta=1e-8)
-            # The derivative is that of the values.
+            # The derivative of the curve equals central differences of its values.
             at = np.linspace(curve.t[0] + 0.01, curve.t[-1] - 0.01, 50)
             np.testing.assert_allclose((curve.at(at + 1e-5)[values] - curve.at(at - 1e-5)[values]) / 2e-5, curve.at(at)[slopes], atol=1e-7)
 
@@ -81,7 +81,7 @@ class Profiles(unittest.TestCase):
         twice = profiles.Profile(np.insert(plain.y, 180, plain.y[180] - 2e-5), np.insert(plain.z, 180, plain.z[180] + 1e-6), "wheel")
         self.assertEqual(len(twice.curve().y), len(plain.curve().y))
         self.assertLess(np.abs(np.diff(twice.curve().at(twice.curve().between(7))[3][1200:])).max(), 1e-4)
-        # Equal points, one or all of them.
+        # Points that are repeated exactly: one of them, or all.
         for often in (np.where(np.arange(len(plain.y)) == 150, 2, 1), 2):
             same = profiles.Profile(np.repeat(plain.y, often), np.repeat(plain.z, often), "wheel").curve()
             self.assertTrue(np.array_equal(same.y, plain.curve().y) and np.array_equal(same.z, plain.curve().z))
@@ -95,7 +95,7 @@ class Profiles(unittest.TestCase):
         for z in (9999.0, -9999.0):
             with self.assertRaisesRegex(ValueError, "stands? for 'not measured'"):
                 profiles.Profile(plain.y, np.where(np.arange(len(plain.z)) == k, z, plain.z), "rail")
-        # A steep face, and a rim below the tread, end a profile.
+        # A steep face and a rim below the tread may end a profile, and are no far-off points.
         self.assertEqual(len(wheel().curve().y), len(wheel().y))
 
     def test_spikes_are_told(self):
@@ -148,7 +148,7 @@ class Profiles(unittest.TestCase):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             profiles.Profile(y, 0.002 * y**2, "rail").curve()
-            # Digits of a hundredth of a micrometre.
+            # Rounding to a hundredth of a micrometre is no noise.
             profiles.Profile(y, np.round(0.002 * y**2, 5), "rail").curve()
             profiles.Profile(y, 0.002 * y**2 + noise, "rail").smoothed(4.0).curve()
         with self.assertWarnsRegex(UserWarning, "noise of the points"):
@@ -163,7 +163,7 @@ class Profiles(unittest.TestCase):
         smooth = tread.smoothed(2.0)
         _, most = tracemalloc.get_traced_memory()
         tracemalloc.stop()
-        # Lists of Python numbers take 32 bytes per number.
+        # Lists of Python numbers would take 32 bytes per number.
         self.assertLess(most, 20001 * 1000)
         inner = slice(2000, -2000)
         self.assertLess(np.abs(smooth.z + smooth.y / 20.0)[inner].max(), 0.01 / (1.0 + 4.0**4) * 1.02)
@@ -175,7 +175,7 @@ class Profiles(unittest.TestCase):
             waves = np.where(made.y > -35.2, 1e-3 * np.cos(2 * np.pi * made.y / wave), 0.0)
             smooth = profiles.Profile(made.y, made.z + waves, "wheel").smoothed(length)
             kept = (smooth.z - made.smoothed(length).z)[inner] @ waves[inner] / (waves[inner] @ waves[inner])
-            # The formula is for an infinite continuous line.
+            # The formula holds for an infinite continuous line.
             self.assertAlmostEqual(kept, 1.0 / (1.0 + (length / wave) ** 4), delta=0.01)
         with self.assertRaisesRegex(ValueError, "wave_length is 0.0"):
             made.smoothed(0.0)
@@ -203,7 +203,7 @@ class Files(unittest.TestCase):
     def test_the_header_of_simpack_is_obeyed(self):
         made = wheel()
         self.assert_same(profiles.read(self.simpack("a.prw", "", made.y, made.z)), made)
-        # As the benchmark's wheel: the flange is at large y, mirrored and reversed by flags; in metres.
+        # As in the benchmark's wheel, the flange is at large y, and flags say that the profile is mirrored and reversed. Lengths are in metres.
         header = "mirror.y = 1 ! mirrored\n inversion = 1\n units.len.f = +1.000e+00"
         self.assert_same(profiles.read(self.simpack("b.prw", header, -made.y / 1000.0, made.z / 1000.0)), made)
         self.assert_same(profiles.read(self.simpack("c.PRW", "mirror.z = 1", made.y, -made.z)), made)
@@ -230,7 +230,7 @@ class Files(unittest.TestCase):
         for gap in (";", " ; ", "\t"):
             rows = "\n".join(f"{y:.9f}{gap}{z:.9f}".replace(".", ",") for y, z in zip(made.y.tolist(), made.z.tolist()))
             continental = profiles.read(self.written("continental.txt", rows), "wheel")
-            # Nine decimals.
+            # The file has nine decimals.
             np.testing.assert_allclose((continental.y, continental.z), (made.y, made.z), atol=5e-10)
         with self.assertRaisesRegex(ValueError, 'kind is not known; give kind="wheel" or kind="rail"'):
             profiles.read(self.written("b.txt", rows))
@@ -256,17 +256,17 @@ class Files(unittest.TestCase):
                 with self.assertRaisesRegex(ValueError, rf"column 0 of counted.txt only counts its lines \({first} ...\).*columns=\(1, 2\)"):
                     profiles.read(path, kind)
                 self.assert_same(profiles.read(path, kind, columns=(1, 2)), made)
-            # Points of a section at one x.
+            # The points of a section have the same x in every line.
             path = self.written("section.txt", "\n".join(f"12.5, {y!r}, {z!r}" for y, z in zip(made.y.tolist(), made.z.tolist())))
             with self.assertRaisesRegex(ValueError, r"column 0 of section.txt is 12.5 in every line; .*columns=\(1, 2\)"):
                 profiles.read(path, kind)
             self.assert_same(profiles.read(path, kind, columns=(1, 2)), made)
-        # Three columns, of which the last is another quantity: the message names the right columns.
+        # The last of three columns is another quantity. The message names the right columns.
         made = wheel()
         path = self.written("mirrored.txt", "\n".join(f"{-y!r} {z!r} 0.5" for y, z in zip(made.y.tolist(), made.z.tolist())))
         with self.assertRaisesRegex(ValueError, r"mirror=True; or give columns=\(y, z\): the file has 3"):
             profiles.read(path, "wheel")
-        # Whole millimetres that do not count lines are coordinates.
+        # Whole millimetres that do not count the lines are coordinates.
         y = np.arange(-70.0, 61.0)
         path = self.written("whole.txt", "\n".join(f"{a:.0f} {b!r} 0.5" for a, b in zip(y, np.interp(y, made.y, made.z).tolist())))
         np.testing.assert_array_equal(profiles.read(path, "wheel").y, y)

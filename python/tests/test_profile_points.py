@@ -37,7 +37,8 @@ class Thinned(unittest.TestCase):
         at = np.linspace(-30.0, 30.0, 101)
         curve = thin.curve()
         z = curve.at(curve.where(at, near=curve.t[len(curve.t) // 2]))[1]
-        # The mean of 50 to 100 points, and of an arc of 0.5 mm, which leaves its tangent by 0.5^2/(24 HEAD).
+        # The tolerance is the noise of a mean of 50 to 100 points, and the error of a mean over an arc of 0.5 mm, which leaves its tangent by
+        # 0.5^2/(24 HEAD).
         np.testing.assert_allclose(z, HEAD - np.sqrt(HEAD**2 - at**2), atol=0.003)
 
     def test_steps_are_means_and_both_ends_stay(self):
@@ -65,13 +66,13 @@ class Thinned(unittest.TestCase):
         smooth = profiles.Profile(y, z, "rail").smoothed(3.0)
         off = np.hypot(np.abs(smooth.y) - 15.0, 13.0 - smooth.z) - 13.0
         corner = np.abs(y) > 18.0
-        # At an end the spline is straight: the arc moves by about (3/(2 pi))^2/13.
+        # At an end the spline is straight, which moves the arc by about (3/(2 pi))^2/13.
         self.assertLess(np.abs(off[corner]).max(), 1.5 * (3.0 / (2.0 * np.pi)) ** 2 / 13.0)
 
 
 class FarOff(unittest.TestCase):
     def test_a_point_on_the_flange_is_refused(self):
-        # The neighbours of such a point are as steep as a face, at which a profile could end.
+        # The neighbours of a point on the flange are as steep as a face at which a profile could end.
         wheel = profiles.read(ARCS / "arcs.prw")
         steep = np.abs(np.diff(wheel.z) / np.diff(wheel.y)) > 2.0
         chosen = [k for k in range(8, len(wheel.y) - 8) if steep[k - 5 : k + 5].all()]
@@ -85,7 +86,7 @@ class FarOff(unittest.TestCase):
         self.assertEqual(len(profiles.Profile(np.delete(wheel.y, k), np.delete(wheel.z, k), "wheel").curve().y), len(wheel.curve().y) - 1)
 
     def test_a_step_is_a_face(self):
-        # The profile goes on beyond a step down, but the step counts as its end.
+        # The profile continues beyond a step down, but the step counts as its end.
         y = np.linspace(0.0, 60.0, 121)
         z = 0.001 * (y - 20.0) ** 2 + np.where(y > 50.2, 6.0, 0.0)
         self.assertEqual(len(profiles.Profile(y, z, "rail").curve().y), 101)
@@ -128,7 +129,7 @@ class Uncertain(unittest.TestCase):
         noisy = self.each(lambda one: profiles.Profile(one.y, one.z + 1e-3 * random.normal(size=len(one.y)), one.kind))
         with self.assertWarnsRegex(UserWarning, r"uncertain by some [12]\d%: so much is left of noise"):
             self.assertGreater(pressed(*(one.smoothed(1.0) for one in noisy)).max_pressure / self.largest, 1.1)
-        # Two smoothings leave as much noise as the longer one alone.
+        # Two smoothings leave no more noise than the longer one alone.
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             largest = pressed(*(one.smoothed(1.0).smoothed(4.0) for one in noisy)).max_pressure

@@ -28,7 +28,7 @@ class Units(unittest.TestCase):
                 self.refused(lambda f=factor: profiles.Wheelset(scaled(wheel(), 1.0 / f), flange_back_at=-70.0), "flange_back is ")
         self.refused(lambda: profiles.Wheelset(wheel(), flange_back_at=-7.0), "flange_back_at is -7; it is the y of the back")
         self.refused(lambda: profiles.Wheelset(wheel().moved(y=70.0), flange_back_at=-70.0), "flange_back_at is -70; .* smallest y is 0:")
-        # A tread that begins at y = -20 has its back 50 mm away. A model has its own scale.
+        # A tread that begins at y = -20 has its back 50 mm away, which is accepted. A model may have a scale of its own.
         tread = wheel().y > -20.0
         profiles.Wheelset(profiles.Profile(wheel().y[tread], wheel().z[tread], "wheel"), flange_back_at=-70.0)
         profiles.Wheelset(scaled(wheel(), 1.0 / 87.0), 460.0 / 87.0, 1360.0 / 87.0)
@@ -163,7 +163,7 @@ class Files(unittest.TestCase):
         for line in ("nan 1.0", "**** 1.0", "-20.0 nan"):
             with self.assertRaisesRegex(ValueError, "among its points"):
                 self.read([*self.rows[:20], line, *self.rows[21:]])
-        # Titles, a count and a date are no points.
+        # Titles, a count and a date are not taken for points.
         titles = ["*** a rail ***", "2 cuts, of which the first", "81", "12.05.2023 10:11"]
         self.assertEqual(len(self.read([*titles, *self.rows, "81 points"]).y), 81)
 

@@ -59,7 +59,7 @@ class Contact(unittest.TestCase):
         point = profiles.contact_points(TRACK, WHEELSET)[0]
         gamma = np.arctan(CONE)
         x, y, z = point.place
-        # A place is that of a minimum: its error is the square root of the round-off of z.
+        # The place of contact is that of a minimum, known to the square root of the round-off of z.
         self.assertAlmostEqual(point.angle, gamma, delta=1e-5 / HEAD)
         self.assertAlmostEqual(x, 0.0, delta=1e-5)
         self.assertAlmostEqual(y, MIDDLE - HEAD * np.sin(gamma), delta=1e-5)
@@ -105,7 +105,7 @@ class Contact(unittest.TestCase):
         x, y, z = places[0], places[1] + position.y, places[2] - RADIUS
         clearance = HEAD - np.sqrt(np.maximum(HEAD**2 - (y - MIDDLE) ** 2, 0.0)) - z
         least = clearance.argmin()
-        # The search has steps of 0.05 mm: the place has this error, and the clearance its square over two radii.
+        # The test's search has steps of 0.05 mm. The place has this error, and the clearance its square over two radii.
         self.assertAlmostEqual(point.position.z, clearance[least], delta=0.05**2 / (2 * HEAD) + 0.05**2 / (2 * RADIUS))
         self.assertAlmostEqual(point.place[0], x[least], delta=0.3)
         self.assertAlmostEqual(point.place[1], y[least], delta=0.3)
@@ -124,7 +124,7 @@ class Contact(unittest.TestCase):
         stands = profiles.settled(TRACK, WHEELSET, y=3.0, yaw=0.01)
         self.assertNotEqual(stands.roll, 0.0)
         for side in ("left", "right"):
-            # Some 2^-52 times the distance of the wheels, a few times.
+            # The clearance is 0 up to a few times 2^-52 of the distance of the wheels.
             self.assertAlmostEqual(profiles.contact_points(TRACK, WHEELSET, stands, side)[0].clearance, 0.0, delta=1e-10)
 
     def test_a_second_place_is_told(self):
@@ -143,7 +143,7 @@ class Contact(unittest.TestCase):
         self.assertAlmostEqual(both[1].clearance, 0.04, delta=1e-4)
         self.assertAlmostEqual(both[1].place[1] - both[0].place[1], 36.0, delta=0.2)
         self.assertEqual(len(profiles.contact_points(profiles.Track(double), flat)), 1)
-        # A load that would reach the other head has a warning, by an approach of 0.047 mm; a light one has none.
+        # A load whose approach of 0.047 mm would reach the other head has a warning. A light load has none.
         with self.assertWarnsRegex(UserWarning, r"also touches the rail 36\.\d mm beside this patch, where it is 0\.04\d* mm farther off"):
             both[0].press(20e3, 0.4, 0.4, **STEEL)
         with self.assertWarnsRegex(UserWarning, r"also touches the rail -3\d\.\d mm beside this patch"):
@@ -173,7 +173,7 @@ class Loaded(unittest.TestCase):
         radius = (0.75 * force * RADIUS / e_star) ** (1 / 3)
         gap, result = point.press(force, 0.1 * radius, 0.1 * radius, **STEEL)
         self.assertEqual(result.status, cn.OK)
-        # With 10 elements per radius the errors of approach and pressure are the square of an element.
+        # With 10 elements per radius the relative errors of approach and pressure are (1/10)^2.
         self.assertAlmostEqual(result.approach / (radius**2 / RADIUS), 1.0, delta=0.01)
         self.assertAlmostEqual(result.max_pressure / (1.5 * force / (np.pi * radius**2)), 1.0, delta=0.01)
         # No place that is nearer than the approach is left out.
@@ -192,7 +192,7 @@ class Loaded(unittest.TestCase):
         # A cylinder of 460 mm that is lowered by 0.02 mm has the same shape to 5e-5.
         self.assertAlmostEqual(other.max_pressure / result.max_pressure, 1.0, delta=2e-4)
         self.assertAlmostEqual(other.approach + 0.02, result.approach, delta=1e-5)
-        # By position: a further approach of 0 is the overlap itself.
+        # If the position is given, a further approach of 0 means the overlap itself.
         by_position = overlapping.gap(0.3, 0.3, 0.02).solve(approach=0.0, **STEEL)
         by_approach = touching.gap(0.3, 0.3, 0.02).solve(approach=0.02, **STEEL)
         self.assertAlmostEqual(by_position.force / by_approach.force, 1.0, delta=1e-3)
@@ -240,7 +240,7 @@ class Loaded(unittest.TestCase):
             seconds = np.array(given)
             self.assertGreater(len(given), 1)
             self.assertLess(np.diff(seconds).max(), -0.009)
-            # Without time left the last complete solve is the result, on a grid that is too small or too large, or without friction.
+            # If no time is left, the last complete solve is the result: on a grid that is too small or too large, or without friction.
             approach = 0.02111
             for depth, friction, why in ((0.5 * approach, None, "on a grid for an approach of 0.0106 mm; the approach is 0.02"),
                                          (2.0 * approach, None, "on a grid for an approach of 0.0422 mm; the approach is 0.0211 mm"),
@@ -277,7 +277,7 @@ class Loaded(unittest.TestCase):
             point.gap(0.1, 0.1, 0.0)
 
     def test_a_wheel_that_turns_fast_is_pushed_forward(self):
-        # The point is on two arcs, near their common end: the middle of the patch is not the contact point.
+        # The contact is on two arcs, near their common end, so that the middle of the patch is not the contact point.
         point = profiles.contact_points(profiles.Track(rail(inner=80.0)), profiles.Wheelset(wheel(1.0 / 200.0)))[0]
         free = 30e3 / point.rolling_radius
         xi, eta, phi = point.creepages(30e3, pitch_rate=1.001 * free)
@@ -297,7 +297,7 @@ class Loaded(unittest.TestCase):
         # The left side has the mirrored force.
         left = profiles.contact_points(profiles.Track(rail(inner=80.0)), profiles.Wheelset(wheel(1.0 / 200.0)), side="left")[0]
         self.assertEqual(left.force_on_wheel(result), (forward, -right, down))
-        # Places are those of the gap, relative to the contact point.
+        # The coordinates of the result are those of the gap, relative to the contact point.
         self.assertNotEqual(gap.middle[1], 0.0)
         np.testing.assert_array_equal(result.y, gap.y)
         self.assertLess(np.abs(gap.y).min(), 1e-9)
@@ -338,7 +338,7 @@ class Creepages(unittest.TestCase):
             along = np.array([0.0, sign * c, -s])
             found = point.creepages(speed, pitch_rate=pitch_rate, yaw_rate=yaw_rate, roll_rate=roll_rate, lateral_speed=lateral, vertical_speed=down)
             here = velocity(point.place)
-            # Differences over 2e-6 s: the errors are 1e-16 times 1 m over that, and (rate 1e-6 s)^2 of the speed.
+            # The test's velocities are differences over 2e-6 s. Their errors are 1e-16 times 1 m over this time, and (rate 1e-6 s)^2 of the speed.
             self.assertAlmostEqual(found[0], here[0] / speed, delta=1e-7)
             self.assertAlmostEqual(found[1], here @ along / speed, delta=1e-7)
             ahead, aside = (velocity(np.asarray(point.place) + move) for move in (np.array([1.0, 0.0, 0.0]), along))

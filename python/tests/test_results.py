@@ -46,7 +46,7 @@ class Numbers(unittest.TestCase):
         self.assertEqual(sorted(keys), sorted(set(keys)))
         found = solve(method="MULTIGRID", friction={"coefficient": 0.3, "force": (10.0, -5.0)})
         self.assertEqual(sorted(found.report), sorted(keys))
-        # The update is that of the pressures, not that of the tractions, and not 0 without pressures.
+        # `update` is that of the pressures, not that of the tractions, and is not 0 because there are no pressures.
         self.assertEqual(found.report["update"], found._report.normal.update)
         self.assertEqual(found.report["tangential_update"], found._report.tangential.update)
         self.assertGreater(solve(method="MULTIGRID").report["update"], 0.0)
@@ -59,7 +59,7 @@ class Numbers(unittest.TestCase):
         iy, ix = np.unravel_index(found.pressure.argmax(), found.pressure.shape)
         self.assertLess(max(abs(found.x[ix] - 7.0), abs(found.y[iy] + 3.0)), found.dx)
         self.assertAlmostEqual(found.x[0] - 0.5 * found.dx, 3.8)
-        # Stresses are those below this grid, not below the first one.
+        # The stresses are those below the last grid, not below the first one.
         stress = found.subsurface([0.05, 0.1, 0.2])
         self.assertEqual(stress.zz.shape[1:], found.pressure.shape)
         self.assertLess(max(abs(stress.largest_shear["x"] - 7.0), abs(stress.largest_shear["y"] + 3.0)), 2 * found.dx)
@@ -184,7 +184,7 @@ class Stresses(unittest.TestCase):
             np.testing.assert_array_equal(own.von_mises, all_of_it.von_mises)
             self.assertEqual(own.largest_von_mises, all_of_it.largest_von_mises)
             self.assertTrue(own.xx is None and own.maximum_shear is None and own.largest_shear == {} and own.principal is None)
-            # Stresses at points, whose x and y are those of the result, are equal.
+            # Stresses at points are the same. Their x and y are coordinates of the result.
             points = [(x, y, z) for z in depths for y in found.y[5:8] for x in found.x[4:9]]
             at = cn.stress_at_points(found.pressure, DX, DY, points, poisson_ratio=NU, traction=traction, body=body)
             tensor = np.stack([getattr(all_of_it, name)[:, 5:8, 4:9].ravel() for name in ("xx", "yy", "zz", "xy", "xz", "yz")], axis=1)
@@ -214,7 +214,7 @@ class Stresses(unittest.TestCase):
         # A coating of the body's own material has no effect: (1 - nu)/(G k).
         waves = np.array([[0.1, 1.0], [10.0, 1e4]])
         np.testing.assert_allclose(cn.coating_compliance(0.2, G, NU, waves, below=(G, NU)), (1 - NU) / (G * waves), rtol=1e-12)
-        # Short waves depend on the coating only, long ones on the substrate only.
+        # Short waves see the coating only, long ones the substrate only.
         found = cn.coating_compliance(0.2, 4 * G, NU, [1e-5, 1e5], below=(G, NU)) * [1e-5, 1e5]
         np.testing.assert_allclose(found, [(1 - NU) / G, (1 - NU) / (4 * G)], rtol=1e-4)
         self.assertEqual(cn.coating_compliance(0.2, G, NU, 1.0, below=(G, NU)).shape, ())
@@ -256,13 +256,13 @@ class Limits(unittest.TestCase):
             self.assertIn(name, found.message)
             rows = cn.cost_of_accuracy(lambda x, y: 0.02 * (x * x + y * y), DX, DY, shape=(32, 32), force=100.0, **{name: 1000}, **STEEL)
             self.assertEqual(rows[-1].obstacle, obstacle)
-        # Without a limit: 4096 x 4096 elements, as the docstrings say.
+        # The docstrings say what no limit means: 4096 x 4096 elements.
         for function in (cn.solve_to_accuracy, cn.cost_of_accuracy):
             self.assertRegex(function.__doc__, r"max_elements : int\n.*0: 4096 x 4096\.")
 
     def test_targets(self):
         for name in ("max_pressure_target", "contact_area_target"):
-            # The relative error of 7 % is 0.07.
+            # A relative error of 7 % is written 0.07.
             with self.assertRaisesRegex(ValueError, f"{name} is 7; .* 1 % is 0.01"):
                 cn.solve_to_accuracy(H, DX, DY, force=100.0, **{name: 7.0}, **STEEL)
             with self.assertRaisesRegex(cn.ContactNormalError, name):
@@ -310,7 +310,7 @@ class Bars(unittest.TestCase):
         def told(m, residual, cycles=1):
             return cn.Progress(m, m, cycles, 0, 1.0, 1.0, 0.0, residual)
 
-        # Bars for one grid; for grids that are not known beforehand; for entries.
+        # Three bars: for one grid, for grids that are not known beforehand, and for entries.
         for bar, steps in ((SolveBar(64 * 64, 1e-6), [(32, 1e-5), (64, 1e-3), (64, 1e-2), (64, 1e-5), (64, np.nan)]),
                            (SolveBar(None, 1e-6), [(16, 1e-3), (16, 1e-7), (32, 0.5), (32, 1e-3), (16, 1e-1), (64, 0.9), (64, 1e-6)]),
                            (SolveBar(64 * 64, 1e-6, 10), [(64, 1e-9, 3), (64, 1e-9, 1), (64, 1e-9, 7)])):

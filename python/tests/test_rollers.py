@@ -44,7 +44,7 @@ class Gaps(unittest.TestCase):
         # A roller on a plane: p0^2 = force E*/(pi length radius).
         force = np.pi * LENGTH * 6.0 * 3000.0**2 / E_STAR
         ratio = rollers.iso_16281(LENGTH, 12.0)(np.array([3.0])) / rollers.logarithmic(LENGTH, force, E_STAR)(np.array([3.0]))
-        # The standard rounds to two digits.
+        # The standard rounds its factors to two digits.
         self.assertAlmostEqual(ratio[0], 1.0, delta=0.05)
 
     def test_what_is_no_roller_is_refused(self):
@@ -110,9 +110,9 @@ class Pressures(unittest.TestCase):
 
     def test_lundbergs_profile_has_even_pressures(self):
         p = self.along(rollers.logarithmic(LENGTH, self.FORCE, E_STAR))
-        # The middle half has the pressure of Hertz' line; with 24 elements per half-width the error is 0.2 %.
+        # The middle half has the pressure of Hertz' line contact. With 24 elements per half-width the error is 0.2 %.
         np.testing.assert_allclose(p[14:42], self.LINE, rtol=2e-3)
-        # The excess is at most a few per cent, except in the last two rows, where the drop is unbounded.
+        # Elsewhere the pressure is at most a few per cent larger, except in the last two rows, where the drop is unbounded.
         self.assertLess(p.max() / self.LINE, 1.03)
 
     def test_moduli_of_another_system_of_units_are_told(self):
@@ -141,7 +141,7 @@ class Pressures(unittest.TestCase):
             rollers.gap((1.2, LENGTH), (48, 56), RADII, drop=log)
             rollers.gap((1.2, 20.0), (48, 80), RADII, drop=log, tilt=1e-3)
             rollers.gap((1.2, LENGTH), (48, 56), RADII, drop=[log, rollers.no_drop(40.0)])
-            # The contact of a ball is far from the ends of the crown.
+            # No warning: the contact of a ball is far from the ends of the crown.
             rollers.gap((0.6, 0.6), (60, 60), (8.0,), drop=rollers.crown(16.0, 8.0))
 
     def test_sharp_ends_and_crowns_do_not(self):
@@ -157,6 +157,6 @@ class Pressures(unittest.TestCase):
         radius = 0.2
         force = radius**3 / 12.0 * E_STAR / 0.75
         result = gap.solve(force=force, e_star=E_STAR)
-        # With 20 elements per radius, and circles that are parabolas to (0.2/8)^2/4.
+        # The errors: 20 elements per radius, and circles that differ from parabolas by (0.2/8)^2/4.
         self.assertAlmostEqual(result.max_pressure / (1.5 * force / (np.pi * radius**2)), 1.0, delta=5e-3)
         self.assertAlmostEqual(result.approach / (radius**2 / 12.0), 1.0, delta=5e-3)

@@ -50,7 +50,7 @@ class Handles(unittest.TestCase):
         for _ in range(40):
             one()
         gc.collect()
-        # Each one holds `held` bytes. 40 leaked ones would be ten times the allowance for the allocator.
+        # Each solver holds `held` bytes. 40 leaked ones would be ten times the allowance, which is for the allocator.
         self.assertLess(resident_bytes() - before, 4 * held)
 
     def test_close_and_what_comes_after(self):
@@ -72,7 +72,7 @@ class Handles(unittest.TestCase):
         self.assertEqual([each.status < 0 for each in found], [True, False, True, False])
         self.assertRegex(found[0].message, "^force is -1; it must not be negative")
         self.assertRegex(found[2].message, "^force is -3; it must not be negative")
-        # Stopped early or solved, as single calls say.
+        # Problems that stop early or are solved have the messages of single calls.
         for each, force in ((found[1], 100.0), (found[3], 0.0)):
             alone = cn.solve(ball(16), 0.1, 0.1, force=force, tolerance=1e-14, max_cycles=1, **STEEL)
             self.assertEqual((each.status, each.message), (alone.status, alone.message))
@@ -87,7 +87,7 @@ class Handles(unittest.TestCase):
             for each in found:
                 self.assertEqual(each.status, -2)
                 self.assertRegex(each.message, "friction->continues is 1; in a batch it must be 0")
-            # The solver's own tractions are there to go on from.
+            # The solver's own tractions remain, and a solve can continue from them.
             self.assertEqual(solver.solve(ball(16), force=100.0, friction={**friction, "continues": True}).status, 0)
 
 
@@ -147,7 +147,7 @@ class Batches(unittest.TestCase):
         with cn.Solver(64, 64, 0.1, 0.1, **endless, **STEEL) as solver:
             began = time.monotonic()
             found = solver.solve_batch([ball(64)] * 30, force=1000.0, max_seconds=0.2)
-        # One after the other; each alone would take 0.2.
+        # The problems are solved one after the other, and each alone would take 0.2 s.
         self.assertLess(time.monotonic() - began, 2.0)
         self.assertEqual({result.status for result in found}, {cn.ITERATION_LIMIT})
 

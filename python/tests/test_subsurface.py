@@ -60,14 +60,14 @@ class Subsurface(unittest.TestCase):
         result = cn.solve(H, D, D, force=1000.0, **STEEL, friction={"coefficient": 0.3, "force": (250.0, None)})
         for body, sign in ((1, 1.0), (2, -1.0)):
             stress = result.subsurface([0.0], body=body)
-            # sxz = -qx at the surface, to round-off of the sum over the elements.
+            # At the surface sxz = -qx, to the round-off of a sum over the elements.
             np.testing.assert_allclose(stress.xz[0], -sign * result.traction[0], atol=1e-12 * result.traction.max())
 
     def test_a_result_of_an_accuracy_keeps_period_and_patches(self):
         given = {"shape": (16, 16), "mean_pressure": 0.02, "target": 1e-2, "shear_modulus": 1.0, "poisson_ratio": 0.3}
         wavy = cn.solve_to_accuracy(lambda x, y: 0.05 * (2.0 - np.cos(2 * np.pi * x / 3.2) - np.cos(2 * np.pi * y / 3.2)), 0.2, 0.2,
                                     period="xy", **given)
-        # Each plane carries the mean pressure.
+        # On each plane the mean of szz is minus the mean pressure.
         np.testing.assert_allclose(wavy.subsurface([0.5, 1.6], components=["zz"]).zz.mean(axis=(1, 2)), -0.02, rtol=1e-6)
         # Two balls on independent patches: pressures on the right have no effect on the left.
         patch = np.where(np.arange(16) < 8, 0, 1) + np.zeros((16, 1), dtype=int)
@@ -88,7 +88,7 @@ class Subsurface(unittest.TestCase):
         listed = cn.solve(H, D, D, force=1000.0, patches=(lists := [patch.tolist(), factors.tolist()]), shear_modulus=82000.0, poisson_ratio=nu)
         of_solver = solver.solve(H, force=1000.0)
         before = [result.subsurface([0.3]).von_mises for result in (layered, patched, listed, of_solver)]
-        # Stresses are first computed after the change.
+        # The stresses of this result are first computed after the arrays have changed.
         unasked = cn.solve(H, D, D, force=1000.0, patches=(patch, factors), **STEEL)
         patch[:], factors[:], layer[:], limit[:] = 0, 1.0, -1.0, -1.0
         lists[1][0][1], nu[:] = 0.0, (0.0, 0.0)
@@ -102,7 +102,7 @@ class Subsurface(unittest.TestCase):
         with cn.Solver(m, m, D, D, influence=table, **bodies) as solver:
             found = solver.solve(h, force=1.0)
         for result in (found, pickle.loads(pickle.dumps(found)), cn.solve(h, D, D, force=1.0, influence=table, **bodies)):
-            # The half-space of the elastic constants is not used, so that pressures above E*/5 have no warning.
+            # The constants of the half-space are not used, so that pressures above E*/5 cause no warning.
             self.assertEqual(result.warnings, ())
             for call in (lambda: result.subsurface([0.1]), lambda: result.stress_at_points([(0.0, 0.0, 0.1)])):
                 with self.assertRaisesRegex(cn.ContactNormalError, "influence is given; subsurface stresses are those of a half-space"):

@@ -54,7 +54,7 @@ class Arrays(unittest.TestCase):
         falling = surface.heights(self.Z, x=[2.5, 2.0, 1.5, 1.0], y=[4.0, 2.0, 0.0])
         np.testing.assert_array_equal(falling.z, self.Z[::-1, ::-1])
         self.assertEqual((falling.dx, falling.dy), (0.5, 2.0))
-        # Decreasing y and top_first have the same meaning: rows are reversed once.
+        # Decreasing y and top_first mean the same, so that rows are reversed only once.
         twice = surface.heights(self.Z, x=[1.0, 1.5, 2.0, 2.5], y=[4.0, 2.0, 0.0], top_first=True)
         np.testing.assert_array_equal(twice.z, self.Z[::-1])
         with self.assertRaisesRegex(ValueError, "y has one place, which tells no spacing: give dx and dy"):
@@ -97,7 +97,7 @@ class Arrays(unittest.TestCase):
     def test_fill_values_of_single_precision_that_a_reader_made_double(self):
         values = np.where(self.Z == 5.0, -9999.9, self.Z).astype(np.float32).astype(np.float64)
         self.assertEqual(np.argwhere(surface.heights(values, 1, 1, fill=-9999.9).holes).tolist(), [[1, 1]])
-        # The decimal text of the largest single is rounded up: as a double it exceeds the largest single.
+        # The decimal text of the largest number of single precision is rounded up: read as a double it exceeds that number.
         for largest in (3.4028235e38, -3.4028235e38):
             values = np.where(self.Z == 5.0, largest, self.Z).astype(np.float32).astype(np.float64)
             self.assertEqual(np.argwhere(surface.heights(values, 1, 1, fill=largest).holes).tolist(), [[1, 1]])
@@ -148,7 +148,7 @@ class Faults(unittest.TestCase):
             surface.gap(plain)
 
     def test_what_is_measured_is_no_fault(self):
-        # A plateau at the top, a bump, heights of an 8-bit instrument.
+        # No spikes: a plateau at the top, a bump, and heights of an 8-bit instrument.
         for z in (np.minimum(rough(), 1.0), rough() + np.where(np.hypot(*np.mgrid[-32:32, -32:32]) < 9, 3.0, 0.0), np.round(8 * rough())):
             found = surface.faults(surface.heights(z, 1, 1))
             self.assertEqual(found.fill_values, ())
@@ -190,7 +190,7 @@ class Faults(unittest.TestCase):
         self.assertIn("1 of 4096 elements (0.02%) were not measured", str(found))
         self.assertIn("5 spikes, the first ones at (iy, ix) = (0, 0), (5, 7)", str(found))
         self.assertEqual(found.removed.holes.sum(), 6)
-        # With a period, elements at the border have neighbours at the opposite border.
+        # With a period the neighbours of elements at the border are at the opposite border.
         step = np.zeros((8, 8))
         step[:, 0] = step[0, :] = 1.0
         step += 1e-3 * np.random.default_rng(2).normal(size=step.shape)
@@ -203,7 +203,8 @@ class Faults(unittest.TestCase):
         z[30:50, 40:70] = np.nan
         made = surface.heights(z, 1, 1)
         self.assertEqual(surface.faults(made).spikes.sum(), 0)
-        # Only the spikes are found inside. At an edge the two neighbours along it may also be marked, because the spike is one of their five neighbours.
+        # Inside only the spike is found. At an edge its two neighbours along the edge may be marked, too, because the spike is one of their five
+        # neighbours.
         for place, most in (((20, 20), 1), ((0, 60), 3), ((99, 3), 3), ((40, 39), 3), ((50, 55), 3), ((0, 0), 3)):
             spoiled = made.z.copy()
             spoiled[place] += 4.0
@@ -244,7 +245,7 @@ class Levels(unittest.TestCase):
         z = rough(32)
         left = surface.level(surface.heights(z, DX, DY)).z
         x, y = (np.arange(32) - 15.5) * DX, (np.arange(32) - 15.5) * DY
-        # The rest has no moments. Each is a sum of 1024 terms of about 10.
+        # After least squares the rest has no moments. Each moment is a sum of 1024 terms of about 10.
         for moment in (left.sum(), (left * x[None, :]).sum(), (left * y[:, None]).sum()):
             self.assertLess(abs(moment), 1e-10)
 
@@ -262,7 +263,7 @@ class Levels(unittest.TestCase):
         self.assertEqual(surface.border_jumps(surface.heights(np.ones((4, 5)), 1, 1)), (0.0, 0.0))
         steps = np.where(np.arange(4)[:, None] < 2, 0.0, 1.0) + np.zeros((4, 5))
         self.assertEqual(surface.border_jumps(surface.heights(steps, 1, 1))[0], 0.0)
-        # Of the three steps between rows one is 1 and two are 0: rms sqrt(1/3). The step across the border is 1.
+        # One of the three steps between rows is 1, the others are 0: an rms of sqrt(1/3). The step across the border is 1.
         self.assertAlmostEqual(surface.border_jumps(surface.heights(steps, 1, 1))[1], np.sqrt(3.0), delta=1e-12)
         # Without pairs of heights across the border, or inside, the ratio is NaN, without a warning of numpy.
         holes = np.where(np.arange(5) == 4, np.nan, rough()[:5, :5])
@@ -338,7 +339,7 @@ class Balance(unittest.TestCase):
         self.assertLess(np.abs(found.centre).max(), 1e-5 * n * d)
         upright = (x[None, :] ** 2 + x[:, None] ** 2) / (2 * radius)
         np.testing.assert_allclose(found.gap.h, upright, atol=1e-5 * (n * d) ** 2 / radius)
-        # Also for a tilt in one direction.
+        # The same for a tilt in one direction.
         for one in ((tilt[0], 0.0), (0.0, tilt[1])):
             found = surface.balance(surface.Gap(upright + one[0] * x[None, :] + one[1] * x[:, None], d, d), 2e-2, tolerance=1e-5, e_star=1.0)
             np.testing.assert_allclose(found.tilt, one, atol=1e-5 * n * d / radius)

@@ -18,7 +18,7 @@ class LightLoads(unittest.TestCase):
         at = (0.25 * (6.5 - 8.5), 2.0 * (15.5 - 9.5))
         found = surface.balance(surface.Gap(h, 0.25, 2.0), 1.0, at=at, e_star=1.0)
         np.testing.assert_allclose(found.centre, at, atol=1e-3)
-        # So do balls on elements of any size.
+        # Balls on elements of any size are balanced, too.
         for dy in (1e-6, 1e6):
             y, x = np.indices((9, 9)) - 4.0
             ball = surface.Gap(0.01 * (x**2 + y**2) + 0.002 * x, 1.0, dy)
@@ -71,7 +71,7 @@ class Rests(unittest.TestCase):
                     continue
                 below = (h - slopes[0] * (gap.x - aim[0]) - slopes[1] * (gap.y[:, None] - aim[1]))[iy, ix]
                 on = np.flatnonzero(below < below.min() + 1e-9)
-                # The aim is a mean of the places of the elements that carry the body, with non-negative weights.
+                # The aim must be a mean of the places of the elements that carry the body, with non-negative weights.
                 places = np.stack([gap.x[ix[on]] - aim[0], gap.y[iy[on]] - aim[1], np.ones(len(on))])
                 weights = np.linalg.lstsq(places, [0.0, 0.0, 1.0], rcond=None)[0]
                 np.testing.assert_allclose(places @ weights, [0.0, 0.0, 1.0], atol=1e-9)

@@ -124,14 +124,14 @@ class Files(unittest.TestCase):
             (self.folder / name).write_text("\r\n".join(rows))
             made = surface.read(self.folder / name, size=(16.0, 5.0))
             np.testing.assert_array_equal(made.z, np.where(holes, np.nan, z))
-        # A cell of blanks is empty; with other holes the first cell of all lines may be empty, too.
+        # A cell of blanks counts as empty. The first cell of a line may be empty, too, if lines have other holes.
         for holes, cell in ((np.arange(16) == 6 + 0 * z, " "), ((np.arange(16) == 0) | (np.arange(16)[None] == 3 + np.arange(5)[:, None]), "")):
             rows = ["\t".join(cell if hole else f"{value:.17g}" for value, hole in zip(*row)) for row in zip(z, holes)]
             (self.folder / "a.txt").write_text("\n".join(rows))
             with self.assertWarnsRegex(UserWarning, "has no number: a column of holes"):
                 made = surface.read(self.folder / "a.txt", size=(16.0, 5.0))
             np.testing.assert_array_equal(made.z, np.where(holes, np.nan, z))
-        # Tabs that align columns, or begin all lines, are no empty cells.
+        # Several tabs that align columns, or a tab that begins all lines, do not make empty cells.
         for begin, between in (("", "\t\t"), ("\t", "\t"), ("\t", " \t\t ")):
             (self.folder / "a.txt").write_text("\n".join(begin + between.join(f"{value:.17g}" for value in row) for row in z))
             np.testing.assert_array_equal(surface.read(self.folder / "a.txt", dx=1.0, dy=1.0).z, z)
@@ -173,7 +173,7 @@ class Files(unittest.TestCase):
             surface.from_xarray(array("um", "mm"))
         with self.assertRaisesRegex(ValueError, "lengths are in mm in the file"):
             surface.from_xarray(array("mm", "mm"), units=("m", "N"))
-        # Words of the NetCDF conventions.
+        # Units may be words of the NetCDF conventions.
         self.assertEqual(surface.from_xarray(array("micrometers", "\u00b5m")).units, ("micrometers", "N"))
         for one, other in (("meter", "m"), ("Metres", "m"), ("microns", "um"), ("millimetre", "mm"), ("nanometers", "nm")):
             surface.from_xarray(array(one, other))
@@ -281,14 +281,14 @@ class Files(unittest.TestCase):
         for wrong in (10.0, None, (10.0,)):
             with self.assertRaisesRegex((TypeError, ValueError), "two numbers|in one way"):
                 surface.read(self.folder / "plain.txt", size=wrong)
-        # These are no coordinates: the step is unrelated to the size of an element.
+        # This line has no coordinates: its step is unrelated to the size of an element.
         far = np.vstack([0.0137 * np.arange(12) + 40.0, heights])
         np.savetxt(self.folder / "far.txt", far)
         with self.assertWarnsRegex(UserWarning, "a straight first line, which is read as heights"):
             self.assertEqual(surface.read(self.folder / "far.txt", dx=0.5, dy=0.5).z.shape, far.shape)
         with self.assertRaisesRegex(ValueError, "has coordinates in its first line"):
             surface.read(self.folder / "far.txt", x=np.arange(12), y=np.arange(13))
-        # A faulty line of a scan is straight after the map is levelled.
+        # A faulty line of a scan is straight after levelling, and is not taken for coordinates.
         broken = heights.copy()
         broken[0] = np.linspace(-0.31, 0.42, heights.shape[1]) * np.ptp(heights)
         np.savetxt(self.folder / "broken.txt", broken)
@@ -296,7 +296,7 @@ class Files(unittest.TestCase):
             with self.subTest(name), self.assertWarnsRegex(UserWarning, f"a straight first {name}, which is read as heights"):
                 np.savetxt(self.folder / "broken.txt", table)
                 self.assertEqual(surface.read(self.folder / "broken.txt", dx=1, dy=1).z.shape, table.shape)
-        # A wedge rises evenly everywhere.
+        # All lines of a wedge rise evenly, so that the first one is not taken for coordinates.
         np.savetxt(self.folder / "wedge.txt", np.add.outer(np.arange(12.0), np.arange(9.0)))
         self.assertEqual(surface.read(self.folder / "wedge.txt", dx=1, dy=1).z.shape, (12, 9))
 
@@ -377,7 +377,7 @@ class Files(unittest.TestCase):
         np.testing.assert_array_equal(made.z, z.T)
         self.assertEqual((made.dx, made.dy, made.period, made.units), (1.0 / 5, 2.0 / 16, "xy", ("um", "N")))
         self.assertIsNone(surface.from_topography(topography, period=None).period)
-        # Lengths belong to their indices.
+        # The physical sizes belong to the indices, also if these are exchanged.
         turned = surface.from_topography(topography, axes="yx")
         np.testing.assert_array_equal(turned.z, z)
         self.assertEqual((turned.dx, turned.dy), (2.0 / 16, 1.0 / 5))
@@ -414,7 +414,7 @@ class Files(unittest.TestCase):
             read = surface.read(self.folder / "a.mat", "Z", dx=0.5, dy=0.25)
             np.testing.assert_array_equal(read.z, z)
             self.assertEqual(surface.read(self.folder / "a.mat", "Z", dx=0.5, dy=0.25, axes="xy").z.shape, (16, 5))
-            # The first array of an instrument's file has the heights.
+            # The first channel of an instrument's file has the heights.
             np.testing.assert_array_equal(surface.read(self.folder / "a.gwy", "Z").z, z.T)
         with instruments(lambda channel_index: made, forward=(5, 16), backward=(5, 16)):
             with self.assertWarnsRegex(UserWarning, "a.gwy has forward, backward; forward is read: variable= names another one"):
@@ -431,7 +431,7 @@ class Files(unittest.TestCase):
             sizes = {"t": count, "y": 4, "x": 4}
             return SimpleNamespace(dims=tuple(sizes), sizes=sizes, shape=(count, 4, 4), ndim=3, squeeze=lambda *_, **__: z)
 
-        # A series of one map is a map.
+        # A series of a single map is read as this map.
         self.assertEqual(surface.from_xarray(series(1)).z.shape, (4, 4))
         with self.assertRaisesRegex(ValueError, "heights have two: choose one map by isel"):
             surface.from_xarray(series(2))

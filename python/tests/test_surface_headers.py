@@ -97,7 +97,7 @@ class Headers(unittest.TestCase):
                 self.assert_grid(self.read("# y x z", columns, end))
                 self.assert_grid(self.read("# y x z of a stage\n# y x z", columns, end))
         warnings.simplefilter("error")
-        # These are no names of columns.
+        # These lines do not name columns.
         for head in ("# y and x of the stage, z of the sensor", "# lines along y, steps along x, heights", "# 20 x 30"):
             with self.subTest(head):
                 self.assert_grid(self.read(head, (X, Y, Z)))
@@ -133,12 +133,12 @@ class Headers(unittest.TestCase):
         self.silent()
         for head in ("# x y z", "# objective 50x, distance 3 mm, slope 2 um/s", "# Sample no. 7 of m and s", "# x [mm] y [mm] z [mm]\n# heights in mm"):
             self.read(head, (X, Y, Z))
-        # Units of other quantities and of values; folders; names.
+        # Ignored: units of other quantities and of values, folders, names.
         for head in ("Feed rate mm/min: 5", "Speed [mm/s]: 2", "gain nm/V: 3", "File: C:/data/mm/a.txt", "Stylus tip radius [um]: 2", "Filter cutoff [mm] 0.8",
                      "wavelength (nm): 633", "z-range, um: 10", "dx [mm] = 0.5", "Created by Meter X", "Micron Inc."):
             with self.subTest(head):
                 self.assert_grid(self.read(f"# {head}", (X, Y, Z)))
-        # The caller names the unit.
+        # With a unit from the caller there is no message.
         self.assert_grid(self.read("# units: um", (X, Y, Z), units=("um", "N")), "um")
 
 

@@ -39,7 +39,7 @@ class Lists(unittest.TestCase):
             warnings.simplefilter("error")
             for columns in ((x, y, z), (x[order], y[order], z[order]), (z[order], x[order], y[order]), (np.arange(63.0), x, y, z)):
                 self.assert_grid(self.read(*columns))
-            # The heights of a plane are also evenly spaced, but are no coordinates.
+            # The heights of a plane are evenly spaced, too, but are not taken for coordinates.
             np.testing.assert_allclose(self.read(x, y, 0.1 * x).z, np.tile(0.1 * self.x, (7, 1)))
         self.path = self.path.with_suffix(".xyz")
         self.assert_grid(self.read(*(one[order] for one in (x, y, z))))
@@ -153,7 +153,7 @@ class Lists(unittest.TestCase):
         z = self.random.normal(size=(12, 9))
         topography = SimpleNamespace(dim=2, is_uniform=True, is_periodic=False, unit=None, physical_sizes=(1.0, 1.0), heights=lambda: z.T)
         text = "\n".join("\t".join(f"{one:.17g}" for one in row) for row in z)
-        # Several tabs between some numbers; and a column of holes.
+        # Maps with several tabs between some numbers, and with a column of holes.
         uneven, empty = text.replace("\t", "\t\t", 1), "\n".join(line.replace("\t", "\t\t", 1) for line in text.split("\n"))
         for end in (".tsv", ".asc", ".xyz"):
             path = self.path.with_suffix(end)
@@ -195,11 +195,11 @@ class Units(unittest.TestCase):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             surface.heights(nanometres, size=(5e3, 5e3))
-            # A plane of a twentieth of a wavelength, with noise of .5 nm, in mm; and an exact plane.
+            # Accepted: a flat to a twentieth of a wavelength with noise of .5 nm, in mm; and an exact plane.
             x = np.linspace(-1.0, 1.0, 64)
             surface.heights(25e-6 * x[None, :] ** 2 + 1e-7 * nanometres, size=(100.0, 100.0))
             surface.heights(np.zeros((64, 64)), size=(100.0, 100.0))
-            # A fifth of the elements has a fill value.
+            # Accepted: a fifth of the elements has a fill value.
             surface.heights(np.where(np.arange(64) % 5 == 0, -9999.0, nanometres), size=(5e3, 5e3))
 
 
@@ -209,8 +209,8 @@ class Tilts(unittest.TestCase):
         level = surface.balance(surface.gap(surface.heights(rough, 0.03, 0.03)), 10.0, young_modulus=210e3, poisson_ratio=0.3)
         tilted = surface.gap(surface.heights(rough + 0.2 * u[None, :] - 0.1 * u[:, None], 0.03, 0.03))
         found = surface.balance(tilted, 10.0, young_modulus=210e3, poisson_ratio=0.3)
-        # The body is the same, so the tilts differ by the added tilt. The tolerance follows from that of the centre of
-        # the pressures, 1e-4 of the grid.
+        # The body is the same, so that the tilts differ by the added tilt. The tolerance follows from that of the centre of the pressures, 1e-4 of
+        # the grid.
         slope = u[1] - u[0]
         np.testing.assert_allclose(np.subtract(found.tilt, level.tilt), (-0.2 * slope / 0.03, 0.1 * slope / 0.03), atol=1e-5)
 

@@ -86,7 +86,7 @@ class CoatedBodies(unittest.TestCase):
 
 class LayersAndWeights(unittest.TestCase):
     def test_a_stiff_pair_of_bodies_has_the_layer_alone(self) -> None:
-        # Nearly rigid bodies: a sticking element has the traction of its own part of the layer.
+        # The bodies are nearly rigid, so that a sticking element has the traction of its own part of the layer.
         compliance = np.full((M, M), 1e-3) * (1.0 + 0.5 * (X[None, :] > 0.0))
         friction = {"coefficient": 1e6, "motion": "SHIFT", "creepage": (-1e-3, 0.0), "compliance": compliance}
         found = cn.solve_tangential(PRESSURE, D, D, friction=friction, shear_modulus=1e12, poisson_ratio=0.28, tolerance=1e-10)

@@ -21,12 +21,12 @@ def corner_differences(function):
 
 class TangentialInfluence(unittest.TestCase):
     def test_tables_of_a_half_space_give_its_tractions(self):
-        # nu = 0 and 1/G = 1: Axx = Ayy = (a + b)/pi, Axy = 0 (Kalker 1990, appendix B).
+        # For nu = 0 and 1/G = 1: Axx = Ayy = (a + b)/pi, Axy = 0 (Kalker 1990, appendix B).
         both = corner_differences(lambda x, y: x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))) / np.pi
         none = np.zeros_like(both)
         friction = {"coefficient": 0.3, "creepage": (-0.004, 0.001)}
         known = cn.solve(H, D, D, force=0.05, friction=friction, **BODIES)
-        # Bodies with G = 1: 1/G = (1 + 1)/2 = 1.
+        # Both bodies have G = 1, so that 1/G = (1 + 1)/2 = 1.
         for influence in ((both, both, none), (4 * both, 4 * both, none, 0.25)):
             found = cn.solve(H, D, D, force=0.05, friction={**friction, "influence": influence}, **BODIES)
             self.assertEqual(found.status, cn.OK)
@@ -60,15 +60,15 @@ class TangentialInfluence(unittest.TestCase):
             np.testing.assert_allclose(found.traction, known.traction, atol=1e-4 * largest)
 
     def test_a_batch_takes_tables_for_both_problems(self):
-        # nu = 0: the normal displacements by a pressure are those in x by a traction in x (Kalker 1990, appendix B).
+        # With nu = 0 the normal displacements by a pressure are those in x by a traction in x (Kalker 1990, appendix B).
         both = corner_differences(lambda x, y: x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))) / np.pi
         entries = [(-0.004, 0.001, 0.0), (0.002, 0.0, 0.001)]
         known = cn.friction_batch(H, D, D, entries, force=0.05, friction={"coefficient": 0.3}, **BODIES)
-        # The bodies are not read: 1/G is in the tables.
+        # The constants of the bodies are not read, because 1/G is in the tables.
         found = cn.friction_batch(H, D, D, entries, force=0.05, influence=both, shear_modulus=7.0, poisson_ratio=0.2,
                                   friction={"coefficient": 0.3, "influence": (both, both, np.zeros_like(both))})
         np.testing.assert_array_equal(found.status, cn.OK)
-        # The errors of forces with residuals of 1e-6.
+        # The tolerance covers the errors of forces with residuals of 1e-6.
         np.testing.assert_allclose(found.force, known.force, atol=1e-5 * np.abs(known.force).max())
 
     def test_tables_per_row_of_a_half_space_give_its_tractions(self):
@@ -84,7 +84,7 @@ class TangentialInfluence(unittest.TestCase):
         with cn.Solver(M, M, D, D, friction={"row_tables": (rows, rows, 0 * rows)}, **BODIES) as solver:
             solver.set_influence(friction={"row_tables": (2 * rows, 2 * rows, 0 * rows)})
             found = solver.solve(H, force=0.05, friction={"coefficient": 0.3, "force": (0.005, None)})
-            # Twice the compliance gives half of the stiffness.
+            # The tables have twice the compliance, so that the force needs twice the creepage.
             stiff = cn.solve(H, D, D, force=0.05, friction={"coefficient": 0.3, "force": (0.005, None)}, **BODIES)
             self.assertAlmostEqual(found.report["creepage"][0] / stiff.report["creepage"][0], 2, delta=1e-4)
         for tables, words in (((rows, rows), "2 entries"), ((rows, rows, rows[1:]), "shapes")):

@@ -35,7 +35,7 @@ class Masks(unittest.TestCase):
         for h in (MASKED, list(MASKED), tuple(MASKED), rows, Holds(), *under_the_mask):
             np.testing.assert_array_equal(solve(h).pressure, self.expected)
         np.testing.assert_array_equal(solve(np.ma.masked_array(H)).pressure, solve().pressure)
-        # Integers under a mask may have any value.
+        # Integers that are masked may have any value.
         whole = np.ma.masked_array(np.where(MASK, 10**18, np.round(H)).astype(np.int64), MASK)
         np.testing.assert_array_equal(solve(whole).pressure, solve(np.where(MASK, np.inf, np.round(H))).pressure)
 
@@ -170,7 +170,7 @@ class Guesses(unittest.TestCase):
             found = solve(rough, method="NORM", contact=alone.contact, **load)
             self.assertEqual(found.status, cn.OK)
             np.testing.assert_allclose(found.pressure, alone.pressure, atol=1e-4 * alone.max_pressure)
-            # The right area saves the search for it.
+            # With the right area as a guess the solve need not search for it.
             self.assertLess(found.report["cycles"], alone.report["cycles"])
         with cn.Solver(M, M, D, D, method="NORM", **STEEL) as solver:
             one = solver.solve(rough, approach=0.3, contact=solve(rough).contact)
@@ -219,7 +219,7 @@ class Tables(unittest.TestCase):
             self.assertTrue(np.isnan(one.wheel_rail(creepage, spin, **rail)).all())
         for name in ("normal_force", "coefficient", "shear_modulus"):
             self.assertTrue(np.isnan(one.wheel_rail((0.1, 0.0), 0.0, **{**rail, name: np.nan})).all())
-        # Wheels that are lifted, entirely or nearly, have no force; the loaded wheel has the force of a call of its own.
+        # Wheels that are lifted, entirely or nearly, have no force. The loaded wheel has the force that a call for it alone gives.
         lifted = {**rail, "semi_axes": (np.array([1.0, 1.0, 1.0]), np.array([0.0, 1.0, 1.0])), "normal_force": np.array([0.0, 1.0, 1e-320])}
         for hold in (True, False):
             forces = np.array(one.wheel_rail((1e-4, 0.0), 0.0, **{**lifted, "hold": hold}))

@@ -30,7 +30,7 @@ class Visco(unittest.TestCase):
                 self.assertAlmostEqual(found.report["time"], time, places=12)
                 self.assertLess(abs(found.force / first.force / (modulus(time) / 8.0) - 1), 1e-8)
                 self.assertGreater(found.report["time_error"], found.report["step_error"] if k else 0)
-            # From rest again, and refused on another handle.
+            # A step may begin from rest again. On another handle a step that continues is refused.
             again = solver.solve(H, approach=0.02, visco={"time_step": 0.4})
             self.assertEqual(again.report["time"], 0.4)
 

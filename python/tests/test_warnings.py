@@ -28,7 +28,7 @@ class Warnings(unittest.TestCase):
         self.assertEqual(result.report["warnings"], cn.WARNING_ONE_ELEMENT | cn.WARNING_ERROR_UNKNOWN)
 
     def test_a_contact_of_few_elements(self) -> None:
-        # The half-width of the line is 0.25 elements of 0.1, or one of 0.025.
+        # The half-width of the contact is 0.025: 0.25 elements of 0.1, or four of 0.006.
         for d, ends in ((0.1, "x"), (0.006, None)):
             x = (np.arange(31) - 15.0) * d
             line = np.tile(0.5 * x**2 / 25.0, (8, 1))
@@ -36,10 +36,10 @@ class Warnings(unittest.TestCase):
             self.assertEqual("NARROW" in found.warnings, ends is not None)
             self.assertRegex(found.message, "contact is at most 2 elements wide in x: take smaller" if ends else "^((?!wide in).)*$")
             self.assertEqual(pickle.loads(pickle.dumps(found)).warnings, found.warnings)
-        # Moduli in Pa with lengths in mm: only four elements of the ball are in contact.
+        # With moduli in Pa and lengths in mm only four elements of the ball are in contact.
         found = cn.solve(BALL, 0.1, 0.1, force=100.0, shear_modulus=82e9, poisson_ratio=0.28)
         self.assertIn("wide in x and y", found.message)
-        # The contact of a punch of two columns is as wide as the punch, and a grid of two columns has no others.
+        # No warning: the contact of a punch of two columns is as wide as the punch, and a grid of two columns has no others.
         punch = np.where(np.abs(X[None, :]) < 0.1, 0.0, np.inf) + 0.0 * X[:, None]
         for h in (punch, np.zeros((32, 2))):
             self.assertNotIn("NARROW", cn.solve(h, 0.1, 0.1, force=100.0, **STEEL).warnings)
@@ -63,7 +63,7 @@ class Warnings(unittest.TestCase):
             self.assertEqual("STRAIN" in result.warnings, is_told)
         self.assertRegex(result.message, r"the largest pressure is 0\.21 E\*, and linear elasticity is for small strains: .* in one system of units")
         self.assertEqual(pickle.loads(pickle.dumps(result)).warnings, result.warnings)
-        # Moduli in GPa with N and mm.
+        # With moduli in GPa, forces in N and lengths in mm strains are large.
         self.assertIn("STRAIN", cn.solve(BALL, 0.1, 0.1, force=100.0, shear_modulus=82.0, poisson_ratio=0.28).warnings)
 
     def test_moduli_of_no_solid_in_the_units_that_are_named(self) -> None:

@@ -30,7 +30,7 @@ class DecimalCommas(unittest.TestCase):
         z = 0.004 * y**2
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "rail.txt"
-            # Columns that mix whole numbers and others (-35 4,9), exponents, remarks.
+            # The columns mix whole numbers with others (-35 4,9), exponents, and remarks.
             for form in ("%g %g", "%.3f;%.4f", "%g\t%g", "%.4e %.4e", "%g %g ; remark", "%g %g;"):
                 for commas in (False, True):
                     text = "\n".join(form % point for point in zip(y, z))
@@ -157,7 +157,7 @@ class Texts(unittest.TestCase):
         rows = cn.quantities(H, D, D, names=["force", "mean_gap", "max_von_mises"], force=100.0, coating=((0.1, 4e4, 0.3), None), **STEEL)
         lines = str(rows).splitlines()
         self.assertIn("not with an effect of the scene", lines[3])
-        # Columns of 18, 13, 16, 12 and 12 letters, then the reason for a missing value.
+        # The columns have 18, 13, 16, 12 and 12 letters. Then follows the reason for a missing value.
         self.assertEqual({len(line[:71].rstrip()) for line in lines[:-1]}, {71})
         self.assertEqual(lines[-1], "force is that of the approach: the force is prescribed")
         self.assertNotIn("prescribed", str(cn.quantities(H, D, D, approach=0.01, **STEEL)))
@@ -169,7 +169,7 @@ class Texts(unittest.TestCase):
         h[:, :3] = np.inf
         found = cn.solve(h, D, D, force=100.0, **STEEL)
         rows = cn.quantities(h, D, D, names=["mean_gap"], coarser=0, force=100.0, **STEEL)
-        # Both solves have a relative tolerance of 1e-6.
+        # The two solves have a relative tolerance of 1e-6.
         self.assertAlmostEqual(found.mean_gap, rows.last("mean_gap").value, delta=1e-6 * found.mean_gap)
         self.assertAlmostEqual(found.mean_gap, (h - found.approach + found.displacement)[:, 3:].mean(), delta=1e-12)
 
@@ -225,7 +225,7 @@ class Pictures(unittest.TestCase):
             axes.figure.canvas.draw()
             first, last = axes.get_xlim()
             shown = [tick for tick in axes.get_xticks() if first <= tick <= last]
-            # Ticks at 1, 2, 3, 5, 7 and their decades: neighbours are at most a factor of 2 apart.
+            # The ticks are 1, 2, 3, 5, 7 and their decades, so that neighbours differ by a factor of 2 at most.
             self.assertGreaterEqual(len(shown), int(np.log2(last / first)))
 
     def test_a_creep_curve(self):
@@ -263,7 +263,7 @@ class Files(unittest.TestCase):
                 surface.read(self.written(name, text), dx=1, dy=1)
         with self.assertRaisesRegex(OSError, "is a folder"):
             surface.read(self.folder, dx=1, dy=1)
-        # Semicolons separate values. Three columns that are not points of a grid are heights.
+        # Semicolons separate values. Three columns that are not points of a grid are read as heights.
         np.testing.assert_array_equal(surface.read(self.written("h.csv", "1,5;2\n3;4\n"), dx=1, dy=1).z, [[1.5, 2], [3, 4]])
         self.assertEqual(surface.read(self.written("i.txt", "1 2 3\n1 2 4\n1 3 3\n2 3 1\n"), dx=1, dy=1).z.shape, (4, 3))
 

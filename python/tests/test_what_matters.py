@@ -6,7 +6,7 @@ import numpy as np
 
 import contact_normal as cn
 
-# A ball of radius 50 with approach 0.05 on a plane: a = 1.58, F = 4/3 E* a d (Johnson 1985, section 4.2).
+# A ball of radius 50 on a plane, with an approach d of 0.05: a = 1.58, F = 4/3 E* a d (Johnson 1985, section 4.2).
 RADIUS, APPROACH, E_STAR = 50.0, 0.05, 1e5
 A = np.sqrt(RADIUS * APPROACH)
 X = (np.arange(64) - 31.5) * 0.1
@@ -21,7 +21,7 @@ class Quantities(unittest.TestCase):
         self.assertEqual([row.shape for row in rows], [(m, m) for m in (16, 32, 64) for _ in truth])
         for name, value in truth.items():
             row = rows.last(name)
-            # The error is at most three times an estimate from one grid.
+            # An estimate from one grid may be too small by a factor of three.
             self.assertLessEqual(abs(row.value - value), 3 * row.error, row)
             self.assertEqual(row.lack, "")
         self.assertEqual(rows[1].lack, "one grid")

@@ -1,4 +1,4 @@
-//! Input that handles, batches and accuracies refuse, and the messages.
+//! Input that calls with handles, batches and searches for an accuracy refuse, and their messages.
 
 use std::ptr::{null, null_mut};
 
@@ -42,8 +42,7 @@ fn a_handle_is_for_its_own_grid_and_bodies() {
 }
 
 unsafe extern "C" fn incomplete(mx: i32, my: i32, _: f64, _: f64, h: *mut f64, _: *mut libc::c_void) -> i32 {
-    // Leaves the last element without a value.
-    // SAFETY: room for all.
+    // A callback that leaves the last element without a value.
     (0..(mx * my - 1) as usize).for_each(|i| unsafe { h.add(i).write(0.01 * i as f64) });
     0
 }
@@ -86,7 +85,7 @@ fn what_only_an_accuracy_refuses() {
 
 #[test]
 fn an_accuracy_that_is_not_reached_says_the_best() {
-    // The target is below round-off: the best result is that of the first grid.
+    // The target is below round-off, so that the best result is that of the first grid.
     let mut call = Call::new();
     call.accuracy.known.target = 1e-15;
     let (status, message) = call.run(Through::ToAccuracy, null_mut());
@@ -95,7 +94,7 @@ fn an_accuracy_that_is_not_reached_says_the_best() {
     assert!(["target", "round-off", "best reached", "6 x 5"].iter().all(|word| message.contains(word)), "{message}");
     assert!(call.report.known.normal.force > 0.0 && accuracy.seconds > 0.0);
 
-    // Cancelled before the first grid: there is no result, and the message says so.
+    // If the surface callback cancels before the first grid, there is no result, and the message says so.
     let mut call = Call::new();
     call.accuracy.known.surface = Some(give_up);
     call.scene.known.undeformed_distance = null();
@@ -174,7 +173,7 @@ fn a_handle_with_a_table_needs_neither_the_table_again_nor_elastic_constants() {
 }
 
 #[test]
-fn a_handle_with_row_tables_needs_neither_them_again_nor_elastic_constants() {
+fn a_handle_with_row_tables_needs_neither_the_tables_again_nor_elastic_constants() {
     let mut call = Call::new();
     call.use_row_tables();
     call.scene.known.shear_modulus = [NAN; 2];

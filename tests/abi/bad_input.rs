@@ -1,4 +1,4 @@
-//! The table of bad input: each row gets its status, a message that names the argument and its value, and untouched outputs.
+//! The rows of bad input (rows.rs): each gets its status, a message that names the argument and its value, and outputs that are not written.
 
 use std::ptr::null_mut;
 
@@ -16,17 +16,17 @@ pub fn refused(row: &Row, through: Through, handle: *mut contact_normal_solver) 
     for word in *words {
         assert!(message.contains(word), "{words:?} through {through:?}: \"{message}\" does not say {word}");
     }
-    // Rust's `{:?}` prints braces for a struct, and for an enumerator behind a colon.
+    // A message must not contain Rust's debug format, which prints braces for structs and for some enumerators.
     assert!(!message.contains(['{', '}']), "{message}");
     assert!(call.outputs() == before, "{words:?} through {through:?}: outputs were written");
 }
 
-/// The message of a stagnation names round-off if that is the reason, and not if the method stalled.
+/// If a solve stagnates, the message names round-off if that is the reason, and does not if the method has stalled.
 #[test]
 fn a_stagnation_says_what_limits() {
     let mut call = Call::new();
     call.h.iter_mut().for_each(|h| *h += 1e9);
-    // With a given force the approach has the rounding of 1e9.
+    // With a given force the approach is near 1e9, and has its round-off.
     (call.scene.known.load, call.scene.known.force) = (CONTACT_NORMAL_PRESCRIBED_FORCE, 100.0);
     call.options.known.tolerance = 1e-12;
     let (status, message) = call.run(Through::Solve, null_mut());
@@ -34,10 +34,10 @@ fn a_stagnation_says_what_limits() {
     assert!(message.contains("round-off of distances of order 1e9"), "{message}");
 }
 
-/// All elements in contact but one are at their limit, whose displacements are 1e-12 of the heights. The message depends on the heights of the free
-/// element.
+/// All elements in contact but one are at their limit. Displacements are 1e-12 of the heights, so that the height of the only free element decides
+/// what the message says.
 #[test]
-fn beside_elements_at_their_limit_it_says_so_too() {
+fn beside_elements_at_their_limit_a_stagnation_names_round_off() {
     let mut call = Call::new();
     call.h.iter_mut().enumerate().for_each(|(i, h)| *h = 0.1 + 0.7031 * i as f64);
     let scene = &mut call.scene.known;
@@ -51,7 +51,7 @@ fn beside_elements_at_their_limit_it_says_so_too() {
     assert!(message.contains("round-off of distances of order"), "{message}");
 }
 
-/// A smoother that diverges ends with p = 0. The message does not name round-off.
+/// With a smoother that diverges the result is p = 0. The message must not name round-off as the reason.
 #[test]
 fn a_diverging_smoother_is_not_blamed_on_round_off() {
     let mut call = Call::new();
@@ -63,7 +63,7 @@ fn a_diverging_smoother_is_not_blamed_on_round_off() {
     assert!(message.contains("p = 0") && !message.contains("round-off"), "{message}");
 }
 
-/// If the tolerance is below the round-off of numbers near 1, the message does not name the offset of the distances.
+/// If the tolerance is below the round-off of numbers near 1, the message names the tolerance, not the offset of the distances.
 #[test]
 fn a_tolerance_below_round_off_is_named() {
     let mut call = Call::new();
@@ -73,7 +73,7 @@ fn a_tolerance_below_round_off_is_named() {
     assert!(message.contains("round-off of double precision") && !message.contains("nearer"), "{message}");
 }
 
-/// A fixed contact area may carry a tensile force, by a call and by a handle whose set-up had a compressive one.
+/// A fixed contact area may carry a tensile force, also on a handle whose set-up had a compressive one.
 #[test]
 fn a_fixed_contact_area_may_be_pulled() {
     let handle = Call::new().new_handle();
@@ -115,7 +115,7 @@ fn every_bad_scene_and_option_is_refused() {
                 refused(row, through, handle);
             }
         }
-        // An accuracy refuses all coefficients of the caller.
+        // A search for an accuracy refuses all coefficients of the caller.
         if !row.0.iter().any(|word| ["influence", "coefficients", "row_tables"].contains(word)) {
             refused(row, Through::ToAccuracy, null_mut());
         }
@@ -132,7 +132,7 @@ fn every_bad_guess_and_output_is_refused() {
             refused(row, through, handle);
         }
     }
-    // After the refusals the handle still solves.
+    // The handle can still solve after all refusals.
     for through in [Through::SolverSolve, Through::SolverSolveBatch] {
         let mut call = Call::new();
         assert_eq!(call.run(through, handle).0, CONTACT_NORMAL_OK);

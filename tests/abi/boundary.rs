@@ -1,4 +1,4 @@
-//! Promises of the header at the boundary: sizes, overlaps, callbacks, the caller's own coefficients.
+//! What the header promises at the boundary of the library: sizes of structs, overlaps, callbacks, the caller's coefficients, and outputs.
 
 mod callbacks;
 mod coefficients;
@@ -11,10 +11,10 @@ use std::ptr::null_mut;
 use crate::call::{Call, Through};
 use contact_normal::ffi::*;
 
-/// The calls that solve.
+/// The functions of the C ABI that solve a scene.
 const SOLVES: [Through; 3] = [Through::Solve, Through::SolverSolve, Through::SolverSolveBatch];
 
-/// A handle that is freed with the test.
+/// A handle that is freed at the end of its test.
 struct Handle(*mut contact_normal_solver);
 
 impl Handle {
@@ -30,12 +30,12 @@ impl Drop for Handle {
     }
 }
 
-/// Solves without a handle; it must be OK.
+/// Solves without a handle, and asserts the status OK.
 fn solved(call: &mut Call) {
     assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()));
 }
 
-/// Asserts that a status and its message refuse the call with these words.
+/// Asserts that a call was refused with this status and a message with these words.
 fn assert_refused(outcome: (i32, String), status: i32, words: &[&str]) {
     let (got, message) = outcome;
     assert_eq!(got, status, "{words:?}: {message}");

@@ -118,7 +118,7 @@ fn what_is_unknown_is_refused_by_name_and_changes_nothing() {
     }
 }
 
-/// Nothing is written beyond the struct of an older header.
+/// An option that lies beyond the struct of an older header is refused, and nothing is written there.
 #[test]
 fn an_option_beyond_the_callers_struct_is_refused() {
     let mut options = contact_normal_options { struct_size: 8, ..Default::default() };

@@ -1,18 +1,18 @@
-//! One call of the C ABI with every input and output. Outputs are filled before the call, so that any write shows.
+//! One call of the C ABI, with every input and output. Outputs have sentinel values before the call, so that any write shows.
 
 use std::ffi::CStr;
 use std::ptr::{null, null_mut};
 
 use contact_normal::ffi::*;
 
-/// Elements of the scene.
+/// The numbers of elements of the scene in x and y.
 pub const MX: usize = 6;
 pub const MY: usize = 5;
 const N: usize = MX * MY;
 /// The table has more offsets than the grid.
 pub const CX: usize = 8;
 pub const CY: usize = 7;
-/// The value of outputs before a call. No solution has it.
+/// The value of outputs before a call, which no solution has.
 const SENTINEL: f64 = -12345.678;
 const SENTINEL_CONTACT: i32 = -77;
 
@@ -34,7 +34,7 @@ impl<T> Grown<T> {
     }
 }
 
-/// The exports that a row of bad input goes through.
+/// The functions of the library that a row of bad input is passed to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Through {
     Solve,
@@ -42,11 +42,11 @@ pub enum Through {
     SolverSolve,
     /// The call is the only problem of a batch.
     SolverSolveBatch,
-    /// The handle that the call makes is freed.
+    /// The handle that the call makes is freed again.
     ToAccuracy,
 }
 
-/// The arguments of a call. Those of `new` are valid.
+/// The arguments of a call. `Call::new` gives valid ones.
 pub struct Call {
     pub scene: Box<Grown<contact_normal_scene>>,
     pub influence: Box<Grown<contact_normal_influence>>,
@@ -56,7 +56,7 @@ pub struct Call {
     pub patches: Box<Grown<contact_normal_patches>>,
     pub row_tables: Box<Grown<contact_normal_row_tables>>,
     pub friction: Box<Grown<contact_normal_friction>>,
-    /// Tables of tangential coefficients: xx, yy, xy.
+    /// The tables of tangential coefficients: xx, yy, xy.
     pub tangential: Box<[contact_normal_influence; 3]>,
     pub tangential_rows: Box<[contact_normal_row_tables; 3]>,
     pub cycle: Box<Grown<contact_normal_cycle>>,
@@ -66,16 +66,16 @@ pub struct Call {
     pub accuracy: Box<Grown<contact_normal_accuracy>>,
     pub h: Vec<f64>,
     pub table: Vec<f64>,
-    /// Tables for each loaded row.
+    /// Row tables: one table for each loaded row.
     pub tables: Vec<f64>,
-    /// Values per element, of a layer or of limits.
+    /// One value per element, for a layer or for limits.
     pub each: Vec<f64>,
     /// The patch of each element.
     pub patch: Vec<i32>,
     pub factors: Box<[f64; 4]>,
     pub pressure: Vec<f64>,
     pub contact: Vec<i32>,
-    /// The argument that is NULL instead.
+    /// The name of the argument that is passed as NULL.
     pub without: &'static str,
     /// The status of the only problem of a batch.
     status: i32,
@@ -95,7 +95,7 @@ pub fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
 }
 
 impl Call {
-    /// A ball on a plane, approach prescribed, all outputs wanted.
+    /// A ball on a plane, with a prescribed approach. All outputs are wanted.
     pub fn new() -> Call {
         let mut call = Call {
             scene: Grown::new(initialised(contact_normal_scene_init)),
@@ -162,7 +162,7 @@ impl Call {
         &mut self.influence.known
     }
 
-    /// Sets one table per loaded row in the scene, and returns the tables for changes.
+    /// Sets row tables in the scene, and returns them for changes.
     pub fn use_row_tables(&mut self) -> &mut contact_normal_row_tables {
         self.scene.known.row_tables = &raw const self.row_tables.known;
         &mut self.row_tables.known
@@ -181,7 +181,7 @@ impl Call {
         &mut self.friction.known
     }
 
-    /// Sets friction with the table for xx and for yy, and 0 for xy.
+    /// Sets friction with tables of tangential coefficients: the table of the call for xx and yy, and 0 for xy.
     pub fn use_tangential_tables(&mut self) -> &mut contact_normal_friction {
         self.tables.clear();
         self.tables.resize(4 * CX * CY, 0.0);
@@ -195,7 +195,7 @@ impl Call {
         friction
     }
 
-    /// Sets friction with the coefficients of the table as one table for each loaded row.
+    /// Sets friction with row tables of tangential coefficients, made of the table of the call.
     pub fn use_tangential_row_tables(&mut self) -> &mut contact_normal_friction {
         let count = MY * MY * 2 * CX;
         self.tables.clear();
@@ -214,7 +214,7 @@ impl Call {
         friction
     }
 
-    /// Sets the coefficient of a loaded row `jy`, a row `iy` and an offset kx.
+    /// Sets the coefficient of row tables for the loaded row `jy`, the row `iy` and the offset kx.
     pub fn set_in_row(&mut self, jy: usize, iy: usize, kx: i64, value: f64) {
         self.use_row_tables();
         self.tables[(jy * MY + iy) * 2 * CX + (kx + CX as i64) as usize] = value;
@@ -240,7 +240,7 @@ impl Call {
 
     /// Sets two patches side by side with these factors.
     pub fn use_patches(&mut self, factors: [f64; 4]) -> &mut contact_normal_patches {
-        // On the heap: a call may be moved.
+        // The factors are on the heap, because a call may be moved.
         *self.factors = factors;
         let patches = &mut self.patches.known;
         (patches.count, patches.patch, patches.factors) = (2, self.patch.as_ptr(), self.factors.as_ptr());
@@ -248,31 +248,31 @@ impl Call {
         &mut self.patches.known
     }
 
-    /// Sets one compliance per element, that of element i to `value`.
+    /// Gives the layer one compliance per element, and sets that of element i to `value`.
     pub fn set_compliance(&mut self, i: usize, value: f64) {
         self.each[i] = value;
         self.use_layer().compliances = self.each.as_ptr();
     }
 
-    /// Sets one limit per element, that of element i to `value`.
+    /// Gives the pressure limit one value per element, and sets that of element i to `value`.
     pub fn set_limit(&mut self, i: usize, value: f64) {
         self.each[i] = value;
         self.use_limit().limits = self.each.as_ptr();
     }
 
-    /// Sets the coefficient at an offset.
+    /// Sets the coefficient of the table at an offset.
     pub fn set_coefficient(&mut self, kx: i64, ky: i64, value: f64) {
         self.use_table();
         self.table[(ky + CY as i64) as usize * 2 * CX + (kx + CX as i64) as usize] = value;
     }
 
-    /// Fixes the contact area: by default all elements.
+    /// Fixes the contact area. It has all elements unless the test changes `contact`.
     pub fn fix_contact(&mut self) {
         self.options.known.active_set = CONTACT_NORMAL_ACTIVE_SET_FIXED;
         self.contact.fill(1);
     }
 
-    /// Makes the call; returns status and message.
+    /// Makes the call, and returns its status and message.
     pub fn run(&mut self, through: Through, handle: *mut contact_normal_solver) -> (i32, String) {
         let scene = if self.without == "scene" { null() } else { &raw const self.scene.known };
         let options = if self.without == "options" { null() } else { &raw const self.options.known };
@@ -301,7 +301,7 @@ impl Call {
                     status
                 }
             };
-            // After OK the message is still that of an earlier call.
+            // After the status OK `contact_normal_last_error` still has the message of an earlier call.
             (status, if status == CONTACT_NORMAL_OK { String::new() } else { last_error() })
         }
     }
@@ -329,7 +329,7 @@ impl Call {
         bytes
     }
 
-    /// Asserts that a valid call wrote every output; otherwise `outputs` would show nothing.
+    /// Asserts that a valid call wrote every output. Otherwise equal `outputs` before and after a refusal would show nothing.
     pub fn assert_all_written(&self) {
         assert!(self.pressure.iter().chain(&self.others).all(|&value| value != SENTINEL));
         assert!(self.contact.iter().all(|&value| value == 0 || value == 1));

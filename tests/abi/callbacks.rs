@@ -1,4 +1,4 @@
-//! The owner of a callback may write into the caller's arrays during a solve: the solve has copied what it needs.
+//! A callback may write into the caller's arrays during a solve, because the solve has copied what it needs.
 
 use std::ptr::null_mut;
 

@@ -1,4 +1,4 @@
-//! Input that `contact_normal_coating` refuses, by name.
+//! Scenes with `contact_normal_coating` that are refused, with messages that name the member; and `contact_normal_coating_compliance`.
 
 use std::ptr::null_mut;
 
@@ -42,7 +42,7 @@ fn pairs_that_are_not_solved_are_refused_by_name() {
         (|c| _ = c.use_table(), "influence"),
         (|c| _ = c.use_row_tables(), "row_tables"),
         (|c| c.use_period(1, 0), "a period in one direction"),
-        // With one coated body the bodies are unlike.
+        // With a coating on one body only the bodies are unlike, for which friction with coatings is not supported.
         (|c| _ = c.use_friction(), "friction and coating are both given, and coating[1] is none"),
     ];
     for (spoil, words) in spoils {
@@ -56,7 +56,7 @@ fn pairs_that_are_not_solved_are_refused_by_name() {
         assert!(message.contains("coating"), "{message}");
         assert!(call.outputs() == before, "{words}: refused, but written");
     }
-    // Both bodies coated alike.
+    // Friction is supported if both bodies have the same coating.
     let mut call = Call::new();
     call.scene.known.coating = [&raw const layer; 2];
     call.scene.known.shear_modulus = [2e3; 2];
@@ -82,11 +82,11 @@ fn the_compliance_of_a_wave_is_that_of_one_material_where_the_layer_is() {
     close(ask(&coating(1.0, 1e3, 0.3), 1e-15), 0.75 / (500.0 * 1e-15));
     assert_eq!(ask(&coating(1.0, 1e3, 0.3), 0.0).0, CONTACT_NORMAL_INVALID_ARGUMENT);
     assert_eq!(ask(&coating(1.0, 1e3, 0.3), f64::NAN).0, CONTACT_NORMAL_NOT_FINITE);
-    // The layer is deep relative to the wave, whose k^2 may overflow.
+    // The layer is thick relative to the wavelength. k^2 may overflow.
     for k in [1e150, 1e155, 1e200] {
         close(ask(&coating(1.0, 1.0, 0.3), k), 0.7 / k);
     }
-    // The compliance overflows.
+    // A compliance that overflows is refused.
     assert_eq!(ask(&coating(1.0, 1e-300, 0.3), 1e-300).0, CONTACT_NORMAL_NOT_FINITE);
     // SAFETY: NULL is allowed, and refused.
     let status = unsafe { contact_normal_coating_compliance(&coating(1.0, 1e3, 0.3), 500.0, 0.25, 1.0, null_mut()) };
@@ -126,7 +126,7 @@ fn the_compliance_on_a_rigid_body_is_that_of_the_layer() {
         assert_eq!(status, CONTACT_NORMAL_OK);
         compliance
     };
-    // t/M with M = 2 G (1 - nu)/(1 - 2 nu), and k^2 t^3/(3 G); the relative error is of order (k t)^2.
+    // Long waves have the compliance t/M with M = 2 G (1 - nu)/(1 - 2 nu), and k^2 t^3/(3 G) if nu = 1/2. The relative error is of order (k t)^2.
     assert!((ask(0.3, 1e-6) / (0.5 * 0.4 / (2e3 * 0.7)) - 1.0).abs() <= 1e-11);
     assert!((ask(0.5, 1e-6) / (1e-12 * 0.125 / 3e3) - 1.0).abs() <= 1e-11);
 }

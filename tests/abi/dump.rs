@@ -1,4 +1,4 @@
-//! `options->dump`: a call that fails writes a file from which it can be replayed. Nothing else of the call changes.
+//! `options->dump`: a call that fails writes a file (a dump) from which the call can be repeated. The dump changes nothing else of the call.
 
 use std::ffi::{CStr, CString};
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use contact_normal::ffi::*;
 use crate::call::last_error;
 use crate::dump_scene::Everything;
 
-/// An empty folder of one test.
+/// An empty folder for one test.
 pub fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("dump_{test}"));
     let _ = std::fs::remove_dir_all(&folder);
@@ -31,7 +31,8 @@ pub fn files(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Solves with a dump, and again from the file: the same status, the same bits of the report.
+/// Makes a solve that fails and writes a dump, and repeats it from the file. Asserts the same status, and the same bits of the report. Returns the
+/// status.
 fn reproduces(name: &str, scene: &mut Everything) -> i32 {
     let path = folder(name).join("failed");
     let path_text = text(&path);
@@ -55,7 +56,7 @@ fn reproduces(name: &str, scene: &mut Everything) -> i32 {
 
 #[test]
 fn a_solve_with_every_effect_is_made_again_from_its_file() {
-    // Effects that can be combined (docs/effects.md).
+    // Combinations of effects that are supported (docs/effects.md).
     for effects in [
         "",
         "layer pressure_limit",
@@ -91,7 +92,7 @@ fn guesses_and_fixed_contact_areas_are_in_the_file() {
     }
 }
 
-/// All effects and all of their arrays are set here, so that the test shows that each is in the file. Add new ones.
+/// This scene has all effects with all of their arrays, so that the test shows that each of them is in the file. Add new effects here.
 #[test]
 fn every_pointer_of_a_scene_is_in_the_file() {
     let path = folder("every").join("failed");
@@ -100,7 +101,7 @@ fn every_pointer_of_a_scene_is_in_the_file() {
         "layer pressure_limit coating influence row_tables period patches friction tables tangential_rows adhesion visco",
     );
     scene.options.dump = path_text.as_ptr();
-    // These effects exclude each other.
+    // A scene with all effects is not supported, but its dump contains them.
     let (status, _) = scene.solve();
     assert_eq!(status, CONTACT_NORMAL_UNSUPPORTED);
     let bytes = std::fs::read(&path).expect("a dump");
@@ -121,7 +122,7 @@ fn every_pointer_of_a_scene_is_in_the_file() {
             _ => {}
         }
     }
-    // As many values as the scene has.
+    // The array has as many values as the scene has elements.
     assert!(text.contains("double 30 undeformed_distance\n"), "{text}");
 }
 
@@ -182,7 +183,7 @@ fn a_file_that_cannot_be_written_changes_nothing_but_the_message() {
     assert_eq!(files(&folder), Vec::<String>::new());
 }
 
-/// A dump replaces a file, but nothing else: a link leads to its file, and a pipe or a device stays what it is.
+/// A dump replaces a regular file, and nothing else: through a link it replaces the link's target, and a pipe or a device stays what it is.
 #[test]
 fn a_link_stays_and_a_pipe_is_not_replaced() {
     use std::os::unix::fs::{symlink, FileTypeExt};
@@ -201,7 +202,7 @@ fn a_link_stays_and_a_pipe_is_not_replaced() {
     assert!(last_error().contains(target.to_str().expect("text")), "{}", last_error());
     assert!(std::fs::symlink_metadata(&link).expect("a link").is_symlink());
     assert!(Dump::read(&std::fs::read(&target).expect("a dump")).is_ok());
-    // A link may lead to a file that is not there yet.
+    // A link may lead to a file that does not exist yet.
     std::fs::remove_file(&target).expect("a file");
     scene.solve();
     assert!(Dump::read(&std::fs::read(&target).expect("a dump")).is_ok());

@@ -1,4 +1,4 @@
-//! Dumps of all calls other than a plain solve, and the program that replays them.
+//! Dumps of all calls other than a plain solve, and the program that repeats the calls.
 
 use std::path::Path;
 use std::process::Command;
@@ -11,11 +11,11 @@ use crate::call::last_error;
 use crate::dump::{folder, text};
 use crate::dump_scene::Everything;
 
-/// The status of a dumped call. Its replay has the same one.
+/// Repeats a dumped call, and asserts the same status. Returns the status.
 fn reproduced(path: &Path, call: &str) -> i32 {
     let read = || Dump::read(&std::fs::read(path).expect("a dump")).expect("a dump that can be read");
     let (status, mut missing) = (read().status(), read().missing());
-    // With a callback for the surface, and for stresses, the distance of the scene is not read.
+    // The undeformed distance of the scene is not read if there is a surface callback, or for stresses.
     missing.retain(|name| name != "scene->undeformed_distance");
     assert_eq!((read().call(), missing), (call, Vec::new()));
     assert_eq!(read().replay().expect("a call").status, status, "{call}: {}", last_error());
@@ -47,7 +47,7 @@ fn set_ups_and_tangential_problems_are_made_again() {
         let status = solve(null_mut(), &scene, &mut report);
         assert!(status > 0, "{status}: {}", last_error());
         assert_eq!(reproduced(&path, "contact_normal_solve_tangential"), status);
-        // With a handle: from its last tractions, and with its tables if the scene names none.
+        // Calls with a handle continue from its last tractions, and use its tables if the scene has none.
         for effects in ["friction tables", "friction tangential_rows"] {
             let mut scene = Everything::new(effects);
             scene.options.dump = path_text.as_ptr();
@@ -90,7 +90,7 @@ fn tables_of_forces_are_made_again() {
     assert_eq!(reproduced(&path, "contact_normal_solve_tangential"), status);
 }
 
-/// A ball, as the callback of a surface.
+/// A surface callback that writes a ball.
 unsafe extern "C" fn ball(mx: i32, my: i32, dx: f64, dy: f64, h: *mut f64, _: *mut libc::c_void) -> i32 {
     for iy in 0..my {
         for ix in 0..mx {
@@ -167,7 +167,7 @@ fn the_program_makes_the_call_again_and_says_whether_it_ends_alike() {
     let (code, said) = run(&path);
     assert!(code == Some(0) && said.ends_with("\nreproduced\n"), "{code:?}: {said}");
     assert!(said.contains(&format!("again: status {status} (stopped at a limit)")), "{said}");
-    // A dump with another status is not reproduced.
+    // A dump with another status is not reproduced, and the program says so.
     let bytes = std::fs::read(&path).expect("a dump");
     let at = bytes.windows(9).position(|bytes| bytes == b"\nstatus 1").expect("the status");
     let mut other = bytes.clone();

@@ -35,7 +35,7 @@ fn a_handle_goes_on_from_what_is_in_the_file() {
             let solve = |scene: &Everything| solve(handle, scene);
             assert_eq!(solve(&scene).0, CONTACT_NORMAL_OK, "{}", last_error());
             if effects == "friction" {
-                // A solve without friction leaves the tractions from which the next step continues.
+                // A solve without friction does not change the tractions from which the next step continues.
                 let friction = std::mem::replace(&mut scene.scene.friction, null());
                 assert_eq!(solve(&scene).0, CONTACT_NORMAL_OK, "{}", last_error());
                 scene.scene.friction = friction;
@@ -43,7 +43,7 @@ fn a_handle_goes_on_from_what_is_in_the_file() {
             let mut before = vec![f64::NAN; 30];
             let mut fields = contact_normal_fields { pressure: before.as_mut_ptr(), ..Default::default() };
             assert_eq!(contact_normal_solver_fields(handle, &mut fields), CONTACT_NORMAL_OK);
-            // The handle has the coefficients.
+            // The handle has the coefficients, so that the scene need not have them.
             (scene.scene.influence, scene.scene.row_tables) = (null(), null());
             scene.options.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
             (scene.options.max_cycles, scene.options.tolerance) = (1, 1e-18);
@@ -69,7 +69,7 @@ fn a_handle_goes_on_from_what_is_in_the_file() {
     }
 }
 
-/// A step of unlike bodies continues from the previous pressures: the tangential displacements are those of the change of the pressures.
+/// A step of unlike bodies continues from the previous pressures, because the tangential displacements are those by the change of the pressures.
 #[test]
 fn a_step_of_unlike_bodies_goes_on_from_the_pressures_in_the_file() {
     let path = folder("unlike").join("failed");
@@ -100,7 +100,7 @@ fn a_step_of_unlike_bodies_goes_on_from_the_pressures_in_the_file() {
     }
 }
 
-/// Elements at their limit belong to the contact area of a start. Otherwise their p would begin at 0.
+/// Elements at their limit belong to the contact area of an initial guess. Otherwise their p would begin at 0, and the repeated call would differ.
 #[test]
 fn a_start_beside_a_limit_is_the_same_again() {
     let path = folder("limit").join("failed");
@@ -155,7 +155,7 @@ fn a_step_in_time_goes_on_from_the_history_in_the_file() {
         assert!(status > 0, "{status}: {}", last_error());
         contact_normal_solver_free(handle);
         let dump = written(&path);
-        // u = A p, and a field for each branch.
+        // The history has u = A p and, for each branch of a body, a field of 30 elements.
         assert_eq!(dump.doubles("handle.history").map(|history| history.len()), Some(2 + 6 * 30));
         let again = dump.replay().expect("a call");
         assert_eq!(again.status, status, "{}", last_error());
@@ -164,10 +164,10 @@ fn a_step_in_time_goes_on_from_the_history_in_the_file() {
             (report.visco.time - 0.9).abs() <= 1e-15 && again.report.expect("a report").visco.time == report.visco.time
         );
         assert_eq!(again.report.expect("a report").visco.compliance, report.visco.compliance);
-        // Both have one iteration.
+        // The call and its repetition make one iteration each.
         let (force, other) = (report.normal.force, again.report.expect("a report").normal.force);
         assert!((other / force - 1.0).abs() <= 1e-12, "{force} {other}");
-        // A scene with one branch less than the history.
+        // Refused: the scene has one branch less than the history.
         let mut changed = std::fs::read(&path).expect("a dump");
         let line = b"int32 branches[0] 2\n";
         let at = changed.windows(line.len()).rposition(|bytes| bytes == line).expect("the branches of body 1");
@@ -204,7 +204,7 @@ fn a_batch_leaves_the_scenes_that_fail() {
     assert_eq!(dump.replay().expect("a call").status, CONTACT_NORMAL_NOT_FINITE);
 }
 
-/// A damaged file is an error, and a call with wrong lengths is refused, whatever the file contains.
+/// A damaged file is an error, and a call with wrong lengths is refused, whatever the file contains. Nothing crashes.
 #[test]
 fn files_that_were_changed_are_read_without_harm() {
     let path = folder("changed").join("failed");
@@ -223,7 +223,7 @@ fn files_that_were_changed_are_read_without_harm() {
     for _ in 0..2000 {
         let mut changed = bytes.clone();
         for _ in 0..1 + random(3) {
-            // Most changes are in the text.
+            // Most of the file, and so most changes, are text.
             let at = random(changed.len());
             match random(4) {
                 0 => changed[at] = random(256) as u8,
@@ -255,7 +255,7 @@ fn a_file_that_says_more_than_it_holds_is_refused() {
     let bytes = std::fs::read(&path).expect("a dump");
     let find = |what: &[u8]| bytes.windows(what.len()).position(|bytes| bytes == what).expect("a line");
     let mut larger = bytes.clone();
-    // The header of a dump of 6 elements in x, changed to 9.
+    // The text of a dump with 6 elements in x is changed to 9.
     larger[find(b"int32 mx 6") + 9] = b'9';
     let dump = Dump::read(&larger).expect("a dump that can be read");
     assert_eq!(dump.replay().expect("a call").status, CONTACT_NORMAL_INVALID_ARGUMENT);

@@ -17,7 +17,7 @@ pub struct Everything {
     pub options: contact_normal_options,
     pub friction: Box<contact_normal_friction>,
     pub h: Box<[f64]>,
-    /// Whether pressures and contact area are passed as fields.
+    /// Whether a solve gets arrays for pressures and contact area.
     pub with_outputs: bool,
     _structs: Box<Structs>,
     _arrays: Vec<Box<[f64]>>,
@@ -61,7 +61,7 @@ fn half_space() -> Vec<f64> {
 }
 
 impl Everything {
-    /// `effects`: names of effects as in the scene, and "tables" or "tangential_rows" for own tables of friction.
+    /// A scene with some effects. `effects`: names of effects as in the scene, and "tables" or "tangential_rows" for the caller's tables of friction.
     pub fn new(effects: &str) -> Everything {
         let names = |name: &str| effects.split(' ').any(|named| named == name);
         let h: Box<[f64]> =
@@ -115,7 +115,7 @@ impl Everything {
         let mut scene = contact_normal_scene { mx: MX as i32, my: MY as i32, dx: 0.5, dy: 0.25, ..Default::default() };
         scene.undeformed_distance = h.as_ptr();
         (scene.shear_modulus, scene.poisson_ratio, scene.approach) = ([82000.0; 2], [0.28; 2], 0.03);
-        // NULL for an effect that is not named.
+        // The pointer is NULL for an effect that is not in the list.
         fn of<T>(is_named: bool, effect: &T) -> *const T {
             if is_named {
                 effect
@@ -137,7 +137,7 @@ impl Everything {
         Everything { scene, options, friction, h, with_outputs: false, _structs: s, _arrays: arrays, _patch: patch }
     }
 
-    /// The status and the report of a solve.
+    /// Solves, and returns the status and the report.
     pub fn solve(&self) -> (i32, contact_normal_report) {
         let mut report = contact_normal_report::default();
         let mut pressure: Vec<f64> = (0..N).map(|i| 100.0 * i as f64).collect();

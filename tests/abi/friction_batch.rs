@@ -1,4 +1,4 @@
-//! `contact_normal_solve_tangential`: results, entries that are refused, cancelling, memory that overlaps.
+//! `contact_normal_solve_tangential` for several entries: results, refused entries, cancellation, and memory that overlaps.
 
 use std::ptr::{null, null_mut};
 
@@ -89,7 +89,7 @@ impl Call {
         self.run_with(self.pressure.as_ptr(), self.entries.len() as i32, self.entries.as_ptr().cast())
     }
 
-    /// Whether entry i has all its results, or none of them.
+    /// Whether all results of entry i were written. Asserts that otherwise none was.
     fn is_written(&self, i: usize) -> bool {
         let fields = self.fields.iter().flat_map(|field| &field[2 * N * i..2 * N * (i + 1)]);
         let values = self.numbers.iter().map(|numbers| &numbers[i]).chain(&self.force[i]).chain(&self.creepage[i]);
@@ -102,7 +102,7 @@ impl Call {
     }
 }
 
-/// The status of an entry is that of the call, also if the time limit ends it.
+/// The status of an entry is that which the call has, also if the time limit ends the entry.
 #[test]
 fn entries_that_time_ends_have_reached_a_limit() {
     let mut call = Call::new();
@@ -111,7 +111,7 @@ fn entries_that_time_ends_have_reached_a_limit() {
     assert!(status == CONTACT_NORMAL_ITERATION_LIMIT && message.contains("max_seconds was reached"), "{message}");
     assert!(call.status.iter().all(|status| [0, CONTACT_NORMAL_ITERATION_LIMIT].contains(status)), "{:?}", call.status);
     assert!(call.status.contains(&CONTACT_NORMAL_ITERATION_LIMIT));
-    // One problem uses all threads.
+    // A single problem uses all threads.
     let mut call = Call::new();
     (call.options.max_seconds, call.friction.creepage) = (1e-9, [-1e-6, 2e-7]);
     let (status, message) = call.run_with(call.pressure.as_ptr(), 1, null());
@@ -148,7 +148,7 @@ fn all_results_are_written_and_agree() {
     }
     assert!((call.report.normal.force - call.pressure.iter().sum::<f64>()).abs() <= 1e-12);
     let given = call.force.clone();
-    // The results are equal without fields, and with the pressures of the normal problem.
+    // The results are the same without fields, and with the pressures of the normal problem.
     call.results = contact_normal_friction_results {
         force: call.results.force,
         ..initialised(contact_normal_friction_results_init)
@@ -184,7 +184,7 @@ fn the_call_itself_is_refused_by_name() {
         let (got, message) = call.run();
         assert!(got == status && message.contains(word), "{word}: {got} {message}");
         assert!((0..COUNT).all(|i| !call.is_written(i)), "{word}");
-        // No status overlaps here.
+        // The status is not among the overlapping outputs here, so that it must be untouched.
         assert!(call.status[0] == UNTOUCHED);
     };
     refused(&|call| call.scene.friction = null(), CONTACT_NORMAL_INVALID_ARGUMENT, "friction");
@@ -203,7 +203,7 @@ fn the_call_itself_is_refused_by_name() {
     assert!(status == CONTACT_NORMAL_NULL_POINTER && message.contains("entries"));
 }
 
-/// Cancels once `user` entries are done.
+/// A callback that cancels when `user` entries are done.
 unsafe extern "C" fn cancel(progress: *const contact_normal_progress, user: *mut libc::c_void) -> i32 {
     // SAFETY: the library's progress, and our count.
     let (done, limit) = unsafe { ((*progress).cycles, *user.cast::<i64>()) };

@@ -5,7 +5,7 @@ use contact_normal::ffi::*;
 
 const N: usize = 16;
 
-/// A scene of `mx` by `my` elements with this flux.
+/// The input for `mx` by `my` elements with this flux.
 fn of((mx, my): (i32, i32), flux: &[f64]) -> contact_normal_heat {
     let mut heat: contact_normal_heat = initialised(contact_normal_heat_init);
     (heat.mx, heat.my, heat.dx, heat.dy) = (mx, my, 0.1, 0.1);
@@ -20,7 +20,7 @@ fn run(heat: &contact_normal_heat) -> (i32, contact_normal_flash) {
     (status, flash)
 }
 
-/// The speed over the diffusivity overflows.
+/// Speeds whose quotient by the diffusivity overflows are refused.
 #[test]
 fn speeds_beyond_the_range_of_numbers_are_refused() {
     let flux = [1.0; N];
@@ -40,7 +40,7 @@ fn threads_have_the_limit_of_all_calls() {
     assert_eq!(run(&contact_normal_heat { threads: 1024, ..of((4, 4), &flux) }).0, CONTACT_NORMAL_OK);
 }
 
-/// A flux that cools warms no element, so each body has one half. Rounding errors of 1e-17 upstream must not count as warm.
+/// A negative flux warms no element, so that each body gets one half. Round-off of 1e-17 upstream must not count as warming.
 #[test]
 fn a_flux_that_cools_is_shared_equally() {
     let cools = |i: usize| (8..16).contains(&(i % 32)) && (4..12).contains(&(i / 32));

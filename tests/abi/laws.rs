@@ -1,4 +1,4 @@
-//! Laws of friction and layers that yield, through the C ABI: refusals by name, and the state of particles from call to call.
+//! Friction laws and plastic layers through the C ABI: refusals with messages that name the member, and the state of particles from call to call.
 
 use std::ptr::{null, null_mut};
 
@@ -31,7 +31,7 @@ fn what_is_no_law_or_not_solved_is_refused_by_name() {
             "friction->law is given: with a branch creepages",
         ),
         (|f| f.branch = 3, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->branch is 3"),
-        // Their products with other values are infinite, or 0.
+        // These values are refused because products with other values are infinite, or 0.
         (|f| f.half_speed[0] = 1e-158, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->half_speed[0] is 1e-158"),
         (|f| f.yield_limit = 1e-160, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->yield_limit is 1e-160"),
         (
@@ -75,7 +75,7 @@ fn what_is_no_law_or_not_solved_is_refused_by_name() {
     assert!(got == CONTACT_NORMAL_UNSUPPORTED && message.contains("bodies must be alike"), "{message}");
 }
 
-/// Under a steep law the message of a result without a certificate has the slope of the law. An OK result has the warning.
+/// Under a steep law a result without a certificate has a message with the slope of the law, and a result with status OK has the warning.
 #[test]
 fn a_steep_law_is_certified_or_named() {
     let (mut refused, mut limited) = (0, 0);
@@ -105,7 +105,7 @@ fn a_steep_law_is_certified_or_named() {
     assert!(refused + limited > 0 && limited > 0, "{refused} {limited}");
 }
 
-/// If a force is not reached, the message has the missing part relative to mu N.
+/// If a force is not reached, the message has its missing part, relative to mu N.
 #[test]
 fn a_force_that_is_missed_says_by_how_much() {
     let (n, mut told) = (MX * MY, 0);
@@ -139,7 +139,7 @@ fn a_force_that_is_missed_says_by_how_much() {
     assert!(told > 0, "each force was reached");
 }
 
-/// Two shifts over a layer that hardens have the same result by a handle that continues and with previous fields of the caller.
+/// Two shifts over a layer that hardens have the same result if a handle continues, and if the caller passes the previous fields.
 #[test]
 fn a_handle_carries_what_the_caller_would_hand_on() {
     let n = MX * MY;
@@ -185,9 +185,9 @@ fn a_handle_carries_what_the_caller_would_hand_on() {
     assert!(fresh.2 != kept.2, "the second shift does not know of the first");
 }
 
-/// Coulomb's friction reads no member of a law, and no state of particles.
+/// With Coulomb's friction the members of a law, and the state of particles, are not read.
 #[test]
-fn without_a_law_what_goes_with_it_is_not_read() {
+fn without_a_law_its_members_are_not_read() {
     let mut call = Call::new();
     let bad = vec![f64::NAN; MX * MY];
     let friction = call.use_friction();
@@ -197,7 +197,7 @@ fn without_a_law_what_goes_with_it_is_not_read() {
     assert_eq!(status, CONTACT_NORMAL_OK, "{message}");
 }
 
-/// With given pressures the warning LAW is that of a solve: with a handle and without one, for one problem and for a table.
+/// With given pressures the warning LAW is that of a whole solve: with a handle and without one, for one problem and for several entries.
 #[test]
 fn a_steep_law_warns_of_pressures_that_are_given() {
     let mut said = [0; 2];

@@ -1,4 +1,4 @@
-//! Promises of the C ABI for any input; called from Rust.
+//! What the C ABI promises for any input, tested by calls from Rust.
 
 mod bad_handles;
 mod bad_input;

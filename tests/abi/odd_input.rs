@@ -1,4 +1,5 @@
-//! Unusual input that is allowed; elements at their limit, batches with friction, and fixed areas.
+//! Unusual input that is allowed, and arrays that begin at odd addresses. Also elements at their limit, batches with friction, and fixed contact
+//! areas.
 
 use std::ptr::{null, null_mut};
 
@@ -18,7 +19,7 @@ fn elements_at_the_limit_are_in_contact_with_2() {
     assert_eq!(call.report.known.normal.max_pressure, 1000.0);
 }
 
-/// The host's own codes, 2 for slip: with a fixed area `contact` is only read.
+/// With a fixed area `contact` is only read, so that the codes of a host, such as 2 for slip, stay in it.
 #[test]
 fn codes_of_a_fixed_area_stay() {
     let mut call = Call::new();
@@ -54,7 +55,7 @@ fn an_array_between_two_doubles_is_refused_by_name() {
     let (status, message) = call.run(Through::Solve, null_mut());
     assert_eq!(status, CONTACT_NORMAL_INVALID_ARGUMENT);
     assert!(message.starts_with("undeformed_distance begins at 0x"), "{message}");
-    // So are arrays that are read first, and those of calls without a scene.
+    // Such arrays are also refused if they are read first, and in calls without a scene.
     let mut solution = contact_normal_hertz_solution::default();
     let (odd, bodies) = (start.wrapping_add(shift).cast::<f64>(), [0.3; 2]);
     // SAFETY: arrays of two values, one of them at an odd place, which is not read.
@@ -65,7 +66,7 @@ fn an_array_between_two_doubles_is_refused_by_name() {
     assert!(last_error().starts_with("shear_modulus begins at 0x"), "{}", last_error());
 }
 
-/// In a batch only that problem is refused.
+/// In a batch only the problem with such an array is refused.
 #[test]
 fn a_problem_with_such_an_array_is_refused_by_its_number() {
     let mut call = Call::new();
@@ -87,7 +88,8 @@ fn a_problem_with_such_an_array_is_refused_by_its_number() {
     unsafe { contact_normal_solver_free(handle) };
 }
 
-/// The tractions of a worker of a batch depend on the share of problems, so no problem continues from them. On the handle itself steps continue.
+/// Which problems a worker of a batch solves is not defined, so that no problem may continue from the last tractions. On the handle itself steps
+/// continue.
 #[test]
 fn a_batch_refuses_friction_that_continues() {
     let mut call = Call::new();
@@ -110,7 +112,7 @@ fn a_batch_refuses_friction_that_continues() {
 /// A name, and a change of a valid call.
 type Change = (&'static str, fn(&mut Call));
 
-/// Unusual input that is allowed.
+/// Changes that make unusual but valid input.
 #[rustfmt::skip]
 const ACCEPTED: &[Change] = &[
     ("default options", |c| c.without = "options"),
@@ -145,7 +147,7 @@ fn what_is_allowed_is_solved() {
         let mut call = Call::new();
         change(&mut call);
         assert_eq!(call.run(Through::Solve, null_mut()), (CONTACT_NORMAL_OK, String::new()), "{name}");
-        // Without fields, or without pressures, no output is written.
+        // Without fields, or without an array for pressures, no output is written.
         if call.without == "fields" || call.fields.known.pressure.is_null() {
             assert!(call.contact.iter().all(|&c| c == -77), "{name}: written, though not wanted");
         } else {
@@ -156,7 +158,7 @@ fn what_is_allowed_is_solved() {
     }
 }
 
-/// `load` must be set only if both amounts are numbers.
+/// `load` need not be set if only one of approach and force is a number.
 #[test]
 fn the_load_is_the_one_that_is_set() {
     let pressures = |load: i32, approach: f64, force: f64| {
@@ -221,7 +223,7 @@ fn no_contact_is_no_error() {
 
 #[test]
 fn a_fixed_area_comes_from_the_fields_whatever_the_guess() {
-    // Two elements, then two others with the pressures of the first solve as the guess.
+    // The first area has two elements, the second one two others, with the pressures of the first solve as the guess.
     let mut call = Call::new();
     call.fix_contact();
     let handle = call.new_handle();

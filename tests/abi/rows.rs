@@ -1,4 +1,4 @@
-//! Bad input, one case a row: the change of a valid call, the status, and the words of the message.
+//! Bad input, one case in each row: the words of the message, the status, and the change of a valid call.
 
 use std::ptr::{null, null_mut};
 
@@ -17,7 +17,7 @@ pub const NAN: f64 = f64::NAN;
 pub const UNSET: i32 = CONTACT_NORMAL_PRESCRIBED_UNSET;
 pub const APPROACH: i32 = CONTACT_NORMAL_PRESCRIBED_APPROACH;
 pub const FORCE: i32 = CONTACT_NORMAL_PRESCRIBED_FORCE;
-/// Factors of two patches.
+/// The factors of two patches.
 pub const HALF: [f64; 4] = [1.0, 0.5, 0.5, 1.0];
 
 /// Argument and value as in the message, the status, and the change that makes a valid call bad.
@@ -57,7 +57,7 @@ pub const SET_UP: &[Row] = &[
     (&["poisson_ratio[1]", "0.51"], INVALID, |c| c.scene.known.poisson_ratio[1] = 0.51),
     (&["poisson_ratio[0]", "NaN"], NOT_FINITE, |c| c.scene.known.poisson_ratio[0] = NAN),
     (&["poisson_ratio[1]", "inf"], NOT_FINITE, |c| c.scene.known.poisson_ratio[1] = INF),
-    // A rigid body's ratio has no effect, but a NaN is still a mistake.
+    // Poisson's ratio of a rigid body has no effect, but a NaN is still a mistake.
     (&["poisson_ratio[1]", "NaN"], NOT_FINITE, |c| {
         (c.scene.known.shear_modulus[1], c.scene.known.poisson_ratio[1]) = (INF, NAN);
     }),
@@ -95,7 +95,7 @@ pub const SET_UP: &[Row] = &[
     (&["pressure_limit->limit", "NaN"], NOT_FINITE, |c| c.use_limit().limit = NAN),
     (&["pressure_limit->limits", "(2, 0)", "-3"], INVALID, |c| c.set_limit(2, -3.0)),
     (&["pressure_limit->limits", "(0, 1)", "NaN"], NOT_FINITE, |c| c.set_limit(MX, NAN)),
-    // 30 elements of 0.5 by 0.25 at 2: 7.5
+    // 30 elements of 0.5 by 0.25 at a limit of 2 carry 7.5.
     (&["force", "100", "pressure_limit", "7.5"], INFEASIBLE, |c| { c.scene.known.load = FORCE; c.use_limit().limit = 2.0; }),
     (&["period->x", "2"], INVALID, |c| c.use_period(2, 0)),
     (&["period->y", "-1"], INVALID, |c| c.use_period(1, -1)),
@@ -120,7 +120,7 @@ pub const SET_UP: &[Row] = &[
     (&["row_tables->rows", "-1"], INVALID, |c| c.use_row_tables().rows = -1),
     (&["row_tables->rows", "4", "my = 5"], INVALID, |c| c.use_row_tables().rows = 4),
     (&["row_tables->rows", "2147483647", "my = 5"], INVALID, |c| (c.use_row_tables().cx, c.use_row_tables().rows) = (i32::MAX, i32::MAX)),
-    // A grid, and so a number of tables, for which there is no memory address.
+    // The grid has so many rows that there is no memory address for the tables.
     (&["rows * rows * 2 cx", "2000000000"], INVALID, |c| {
         (c.scene.known.mx, c.scene.known.my, c.use_row_tables().rows) = (1, 2_000_000_000, 2_000_000_000);
     }),
@@ -179,7 +179,7 @@ pub const SET_UP: &[Row] = &[
     (&["friction->row_tables", "friction->influence_cross"], UNSUPPORTED, |c| { let tables = c.use_tangential_tables().influence; let f = c.use_tangential_row_tables(); (f.influence, f.influence_cross) = ([std::ptr::null(); 3], [tables[0], tables[1]]); }),
     (&["friction", "period"], UNSUPPORTED, |c| { c.use_friction(); c.use_period(1, 0); }),
     (&["friction", "patches"], UNSUPPORTED, |c| { c.use_friction(); c.use_patches(HALF); }),
-    // The mean of the distance is 0.0691...
+    // The approach is beyond the mean of the distance, 0.0691...
     (&["approach", "0.5", "mean plane"], INFEASIBLE, |c| { c.scene.known.approach = 0.5; c.use_period(1, 1); }),
 
     (&["method", "17"], INVALID, |c| c.options.known.method = 17),
@@ -214,7 +214,7 @@ pub const SET_UP: &[Row] = &[
     (&["coarsest", "0"], INVALID, |c| c.use_cycle().coarsest = 0),
     (&["coarsest", "17"], INVALID, |c| c.use_cycle().coarsest = 17),
     (&["threads", "-1"], INVALID, |c| c.options.known.threads = -1),
-    // Refused, not tried: a million threads might take the machine down.
+    // So many threads must be refused without trying: a million of them might take the machine down.
     (&["threads", "1025"], INVALID, |c| c.options.known.threads = 1025),
     (&["threads", "2147483647"], INVALID, |c| c.options.known.threads = i32::MAX),
 ];
@@ -229,7 +229,7 @@ pub const SOLVES: &[Row] = &[
     (&["ledger_capacity", "-1"], INVALID, |c| c.report.known.ledger_capacity = -1),
     (&["contact", "FIXED"], NULL, |c| { c.fix_contact(); c.fields.known.contact = null_mut(); }),
     (&["contact", "empty"], INVALID, |c| { c.fix_contact(); c.contact.fill(0); }),
-    // The only element in contact has no surface.
+    // The only element of the fixed area has no surface.
     (&["contact", "empty"], INVALID, |c| { c.fix_contact(); c.contact[1..].fill(0); c.h[0] = INF; }),
     (&["pressure", "GIVEN"], NULL, |c| { c.options.known.initial_guess = 1; c.fields.known.pressure = null_mut(); }),
     (&["pressure", "NaN"], NOT_FINITE, |c| { c.options.known.initial_guess = 1; c.pressure[7] = NAN; }),

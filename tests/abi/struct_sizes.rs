@@ -1,4 +1,4 @@
-//! Structs of other sizes than this library's. A size of no version is refused. A larger struct is read if its unknown members are 0.
+//! Structs of other sizes than this library's. A size that no version has is refused. A larger struct is accepted if its unknown members are 0.
 
 use std::ptr::null_mut;
 
@@ -6,7 +6,7 @@ use crate::call::{Call, Through};
 use crate::rows::*;
 use contact_normal::ffi::*;
 
-/// Sets the size that a struct declares; its own size is what `_init` wrote.
+/// Sets the size that a struct declares, from its own size, which `_init` wrote. Returns the new size.
 fn declare(call: &mut Call, name: &str, size: impl Fn(i64) -> i64) -> i64 {
     match name {
         "layer" => _ = call.use_layer(),
@@ -72,7 +72,7 @@ const STRUCTS: [&str; 13] = [
     "accuracy",
 ];
 
-/// A call that reads the struct.
+/// A function that reads the struct.
 fn reader(name: &str) -> Through {
     if name == "accuracy" {
         Through::ToAccuracy

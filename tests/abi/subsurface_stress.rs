@@ -1,4 +1,4 @@
-//! `contact_normal_subsurface_stress` and `contact_normal_stress_at_points`: outputs, refusals, bodies, cancelling.
+//! `contact_normal_subsurface_stress` and `contact_normal_stress_at_points`: outputs, refusals, bodies, and cancellation.
 
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
@@ -80,7 +80,7 @@ impl Call {
         (status, message(status))
     }
 
-    /// The number of values that were written.
+    /// The number of output values that the call wrote.
     fn written(&self) -> usize {
         let fields =
             self.stress.iter().chain(&self.principal).chain(&self.directions).chain([&self.mises, &self.shear]);
@@ -105,7 +105,7 @@ fn all_outputs_are_written_and_agree() {
         let [one, two, three] = std::array::from_fn::<f64, 3, _>(|k| call.principal[k][i]);
         assert!((xx + yy + zz - one - two - three).abs() <= 1e-13);
         assert_eq!(call.shear[i], 0.5 * (one - three));
-        // The first direction is that of the first stress: n . sigma n.
+        // The first principal direction n belongs to the first principal stress: n . sigma n.
         let n = &call.directions[0][3 * i..3 * i + 3];
         let s = |c: usize| call.stress[c][i];
         let along = n[0] * n[0] * s(0)
@@ -227,7 +227,8 @@ fn bodies_that_are_no_half_spaces_are_refused_by_name() {
             assert!(status == CONTACT_NORMAL_UNSUPPORTED && message.contains(name), "{name}: {status} {message}");
         }
     }
-    // Two periods are allowed on the grid. So are a coating without thickness or of the substrate's material, and one of the other body.
+    // Two periods are allowed for stresses on the grid. Also allowed are a coating of thickness 0 or of the substrate's material, and a coating of
+    // the other body.
     let (on_grid, (status, message)) = ask(&|scene| scene.period = &periods[2]);
     assert_eq!(on_grid.0, CONTACT_NORMAL_OK);
     assert!(status == CONTACT_NORMAL_UNSUPPORTED && message.contains("period"), "{message}");
@@ -258,7 +259,7 @@ fn null_pointers_are_refused() {
     }
 }
 
-/// Counts its calls, and cancels at the second depth.
+/// A callback that counts its calls, and cancels at the second depth.
 unsafe extern "C" fn cancel(progress: *const contact_normal_progress, user: *mut c_void) -> i32 {
     // SAFETY: as the library calls it, with the counter below.
     unsafe {
@@ -322,7 +323,7 @@ fn points_at_the_centres_have_the_stresses_of_the_grid() {
     assert_eq!(at(points.as_ptr(), null_mut()).0, CONTACT_NORMAL_NULL_POINTER);
 }
 
-/// The stresses below a patch do not depend on an independent one, by planes and by points.
+/// The stresses below a patch do not depend on the loads of an independent patch, on planes and at points.
 #[test]
 fn patches_of_the_scene_scale_the_loads() {
     let patch: Vec<i32> = (0..N).map(|i| i32::from(i % MX >= 2)).collect();
@@ -364,7 +365,7 @@ fn patches_of_the_scene_scale_the_loads() {
     assert!(status == CONTACT_NORMAL_INVALID_ARGUMENT && message.contains("patches->count is 65"), "{message}");
 }
 
-/// The time limit ends stresses at points as it ends those at depths. 40000 points are more than one block.
+/// The time limit ends the computation of stresses at points as it ends that at depths. 40000 points are more than one block.
 #[test]
 fn points_keep_to_a_limit_of_time() {
     let mut call = Call::new();

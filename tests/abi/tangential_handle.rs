@@ -1,4 +1,4 @@
-//! `contact_normal_solve_tangential` with a handle: the tractions that it keeps, refusals, and starts.
+//! `contact_normal_solve_tangential` with a handle: the tractions that the handle keeps, refusals, and initial guesses.
 
 use std::ptr::{null, null_mut};
 
@@ -46,7 +46,7 @@ impl Call {
         call
     }
 
-    /// Tables of the caller: `factor` times a function that decays with the distance.
+    /// Sets the caller's tables: `factor` times a function that decays with the distance.
     fn use_tables(&mut self, factor: f64) {
         let offset = |k: usize| ((k % (2 * M)) as f64 - M as f64, (k / (2 * M)) as f64 - M as f64);
         let along = |k: usize| factor / (1.0 + offset(k).0.hypot(offset(k).1));
@@ -62,7 +62,7 @@ impl Call {
         }
     }
 
-    /// Makes the last tractions those before the step.
+    /// Makes the last tractions the previous tractions of the next step.
     fn go_on(&mut self) {
         self.before = [self.traction[..N].to_vec(), self.traction[N..].to_vec()];
         self.friction.previous_traction = self.before.each_ref().map(|q| q.as_ptr());
@@ -111,13 +111,13 @@ impl Drop for Handle {
 
 const OK: (i32, String) = (CONTACT_NORMAL_OK, String::new());
 
-/// The most by which two tractions differ, relative to the largest.
+/// The largest difference between two fields of tractions, relative to the largest traction of `one`.
 fn apart(one: &[f64], other: &[f64]) -> f64 {
     let largest = one.iter().fold(0.0f64, |most, q| most.max(q.abs()));
     one.iter().zip(other).fold(0.0f64, |most, (a, b)| most.max((a - b).abs())) / largest
 }
 
-/// Tractions of `contact_normal_solve_tangential` are tractions of the handle, for a solve that continues, too.
+/// The tractions of `contact_normal_solve_tangential` are the last tractions of the handle, also for a whole solve that continues.
 #[test]
 fn a_solve_continues_from_tractions_without_a_normal_problem() {
     let mut call = Call::new();
@@ -147,7 +147,7 @@ fn a_handle_has_the_bits_of_single_calls() {
                     call.use_tables(0.01);
                 }
             }
-            // Neither an undeformed distance nor a load is there.
+            // The scene has neither an undeformed distance nor a load.
             let handle = Handle::of(&kept);
             for step in 0..3 {
                 for call in [&mut alone, &mut kept] {
@@ -189,7 +189,7 @@ fn tractions_of_the_step_before_are_kept() {
     assert_eq!(alone.run(null_mut()), OK);
     assert_eq!(kept.run(handle.0), OK);
     assert_eq!(alone.traction, kept.traction);
-    // A table leaves them as they are.
+    // A call with several entries does not change the last tractions.
     let entries = [[0.001, 0.0, 0.0], [0.002, 0.0, 0.0]];
     kept.friction.continues = 0;
     // SAFETY: structs with their arrays, and two entries.
@@ -226,7 +226,7 @@ fn other_tables_have_a_status_of_their_own() {
     let found = call.traction.clone();
     assert_eq!(call.run(null_mut()), OK);
     assert_eq!(found, call.traction);
-    // An invalid table is refused, and changes nothing.
+    // An invalid table is refused. It changes nothing.
     call.values[2][(M + 1) * 2 * M + M + 1] += 1.0;
     assert_eq!(handle.set_influence(&call), CONTACT_NORMAL_UNSUPPORTED);
     call.friction.influence = [null(); 3];
@@ -277,7 +277,7 @@ fn a_start_near_the_solution_saves_products_and_changes_nothing() {
             }
             assert_eq!(call.run(null_mut()), OK);
             let (cold, found) = (call.products(), call.traction.clone());
-            // A start from the solution takes one product.
+            // A start from the solution takes one product, that of the certificate.
             let start = [found[..N].to_vec(), found[N..].to_vec()];
             call.friction.initial_traction = start.each_ref().map(|q| q.as_ptr());
             assert_eq!(call.run(null_mut()), OK);
@@ -286,9 +286,9 @@ fn a_start_near_the_solution_saves_products_and_changes_nothing() {
                 "motion {motion}, by force {by_force}: {} of {cold}",
                 call.products()
             );
-            // With a residual of 1e-9 tractions have an error of some 1e-8.
+            // A residual of 1e-9 leaves an error of some 1e-8 in the tractions, of which 1e-6 is ample.
             assert!(apart(&found, &call.traction) < 1e-6, "{motion} {by_force}: {}", apart(&found, &call.traction));
-            // A start far from the solution is dropped.
+            // The library drops an initial guess that is far from the solution.
             let far = [vec![-1e3; N], vec![7.0; N]];
             call.friction.initial_traction = far.each_ref().map(|q| q.as_ptr());
             assert_eq!(call.run(null_mut()), OK);
@@ -298,7 +298,7 @@ fn a_start_near_the_solution_saves_products_and_changes_nothing() {
                 "motion {motion}, by force {by_force}: {} of {cold}",
                 call.products()
             );
-            // PREVIOUS does the same with the last tractions of the handle.
+            // The option PREVIOUS does the same with the last tractions of the handle.
             call.friction.initial_traction = [null(); 2];
             let handle = Handle::of(&call);
             assert_eq!(call.run(handle.0), OK);
@@ -325,7 +325,7 @@ fn own_tables_may_end_with_the_grid_in_rolling() {
         call.friction.motion = motion;
         assert_eq!(call.run(null_mut()), OK);
         assert!(call.report.tangential.force[0] > 0.0);
-        // C and a step need larger tables.
+        // The contact area together with this step needs larger tables.
         call.friction.rolling_distance = 5.0;
         let (status, message) = call.run(null_mut());
         assert!(status == CONTACT_NORMAL_INVALID_ARGUMENT && message.contains("cx is 16"), "{status} {message}");
@@ -385,7 +385,7 @@ fn a_table_of_entries_has_the_tables_of_its_handle() {
     // Later scenes may leave the tables out.
     call.friction.influence = [null(); 3];
     assert_eq!(forces(&call, with_tables.0), expected);
-    // A handle without tables takes none later, whatever it has solved before.
+    // A handle that was set up without tables does not accept any later, whatever it has solved before.
     let without = Handle::of(&call);
     let of_half_space = forces(&call, without.0);
     assert!(of_half_space.0 == CONTACT_NORMAL_OK && of_half_space != expected);
@@ -393,7 +393,7 @@ fn a_table_of_entries_has_the_tables_of_its_handle() {
     assert_eq!(forces(&call, without.0).0, CONTACT_NORMAL_INFLUENCE_CHANGED);
 }
 
-/// Tables that a later scene leaves out exclude the same effects as tables that it names.
+/// If a later scene leaves out the tables of the handle, they exclude the same effects as if the scene had them.
 #[test]
 fn coefficients_that_are_left_out_exclude_what_they_exclude() {
     let mut call = Call::new();
@@ -401,7 +401,7 @@ fn coefficients_that_are_left_out_exclude_what_they_exclude() {
     let normal = call.tables[0];
     call.scene.influence = &raw const normal;
     let handle = Handle::of(&call);
-    // The bodies are not read beside own coefficients.
+    // The constants of the bodies are not read if the caller gives coefficients.
     call.scene.shear_modulus = [1.0, 7.0];
     assert_eq!(call.run(handle.0), OK);
     call.scene.influence = null();

@@ -1,4 +1,4 @@
-//! Warnings of a report, also if the status is OK.
+//! The warnings of a report. A report may have warnings although the status is OK.
 
 use std::ptr::null;
 
@@ -8,7 +8,7 @@ use contact_normal::ffi::*;
 const M: usize = 32;
 const D: f64 = 0.1;
 
-/// A ball, and a spike of this height in its middle.
+/// The distances of a ball with a spike of this height in its middle.
 fn ball(spike: f64) -> Vec<f64> {
     let at = |k: usize| (k as f64 - 15.5) * D;
     let mut h: Vec<f64> = (0..M * M).map(|i| 0.02 * (at(i % M).powi(2) + at(i / M).powi(2))).collect();
@@ -16,7 +16,7 @@ fn ball(spike: f64) -> Vec<f64> {
     h
 }
 
-/// A solve by force: the report and the message; the status is OK. `change` names effects and options.
+/// Solves by force, and asserts the status OK. Returns the report and the message. `change` adds effects and options.
 fn solved(
     h: &[f64],
     force: f64,
@@ -47,7 +47,7 @@ fn a_contact_that_is_resolved_has_none() {
     assert_eq!((report.warnings, report.normal.edge_count), (0, 0));
 }
 
-/// A batch whose problems are all OK has the message of their warnings, not that of an earlier call.
+/// A batch whose problems are all OK has the message of their warnings. An earlier message is replaced.
 #[test]
 fn a_batch_says_what_its_problems_warn_of() {
     let surface = ball(0.0);
@@ -100,7 +100,7 @@ fn contact_at_the_border_where_nothing_repeats_itself() {
     assert!(report.normal.edge_count > 0);
     assert_ne!(report.warnings & CONTACT_NORMAL_WARNING_BORDER, 0);
     assert!(message.contains("reaches the border"), "{message}");
-    // A line across the grid reaches both borders in x, and none in y. The period joins those in x.
+    // A line contact across the grid reaches both borders in x, and none in y. A period in x joins the borders in x.
     let line: Vec<f64> = (0..M * M).map(|i| 0.02 * ((i / M) as f64 * D - 15.5 * D).powi(2)).collect();
     let mut period = contact_normal_period { x: 1, ..Default::default() };
     let border = |period: &contact_normal_period| {
@@ -112,7 +112,7 @@ fn contact_at_the_border_where_nothing_repeats_itself() {
     (period.x, period.y) = (0, 1);
     assert!(border(&period));
     assert_ne!(solved(&line, 100.0, |scene, _| scene.period = null()).0.warnings & CONTACT_NORMAL_WARNING_BORDER, 0);
-    // A row of elements is a line contact: its one row is no border.
+    // A single row of elements is a line contact, whose row does not count as a border.
     let row: Vec<f64> = ball(0.0)[..M].to_vec();
     assert_eq!(solved(&row, 1.0, plain).0.warnings & CONTACT_NORMAL_WARNING_BORDER, 0);
 }
@@ -130,7 +130,7 @@ fn one_element_that_carries_more_than_half() {
     assert_eq!(seen, [true; 2]);
 }
 
-/// On a fixed area elements may pull, and the total force is less than that of one pressing element. This is no spike.
+/// On a fixed area elements may pull, so that the total force may be less than that of one pressing element. This does not count as a spike.
 #[test]
 fn an_area_that_pulls_has_no_spike() {
     let surface = ball(0.0);
@@ -163,7 +163,7 @@ fn an_area_that_pulls_has_no_spike() {
     assert_eq!(report.warnings & CONTACT_NORMAL_WARNING_SPIKE, 0);
 }
 
-/// Elements at their limit are in contact, also at the border.
+/// Elements at their limit are in contact, so that they count at the border, too.
 #[test]
 fn elements_at_their_limit_reach_the_border() {
     // A ridge along the first column, which is at its limit.
@@ -179,7 +179,8 @@ fn elements_at_their_limit_reach_the_border() {
     assert_eq!(report.normal.contact_count, M as i64);
 }
 
-/// A search begins on few elements, but its warnings are those of its last grid. With a limit several grids give the error, so that it is known.
+/// A search for an accuracy begins on few elements, but its warnings are those of its last grid. With a pressure limit several grids give an estimate
+/// of the error, so that the error is known.
 #[test]
 fn a_search_warns_of_its_last_grid() {
     let h: Vec<f64> = (0..64)

@@ -1,5 +1,5 @@
-//! Ways to end a call from outside other than its callback: a time limit, and an integer that another thread may set. Also what handles and the
-//! library report about themselves, and the memory they keep.
+//! Ways to end a call from outside, other than its callback: a time limit, and an integer that another thread may set. Also what handles and the
+//! library report about themselves, and the memory that they keep.
 
 use std::ffi::CString;
 use std::ptr::null_mut;
@@ -21,7 +21,7 @@ fn a_limit_of_time_ends_a_call_with_the_best_iterate() {
     for through in SOLVES {
         let mut call = long();
         let handle = call.new_handle();
-        // 1e-10 is less than clocks resolve.
+        // 1e-10 s is shorter than clocks can resolve.
         for limit in [1e-9, 1e-10, 1e-300] {
             call.options.known.max_seconds = limit;
             let (status, message) = call.run(through, handle);
@@ -68,9 +68,9 @@ unsafe extern "C" fn set_stop(_: *const contact_normal_progress, user: *mut libc
     0
 }
 
-/// The bill of `neglect_below` calls `progress` and reads `stop`.
+/// The bill of effects that `neglect_below` computes before the solve calls `progress` and reads `stop`, too.
 #[test]
-fn what_leaves_effects_out_asks_as_well() {
+fn the_bill_of_neglected_effects_calls_progress_and_reads_stop() {
     let told = |neglect_below: f64| {
         let mut grids = Vec::new();
         let mut call = Call::new();
@@ -98,7 +98,7 @@ fn what_leaves_effects_out_asks_as_well() {
     assert!(grids.is_empty(), "{grids:?}");
 }
 
-/// Records the number of columns of the grid of each cycle.
+/// A callback that records the number of columns of the grid of each cycle.
 unsafe extern "C" fn note_grid(told: *const contact_normal_progress, user: *mut libc::c_void) -> i32 {
     // SAFETY: the library's struct and the test's own list.
     unsafe { (*user.cast::<Vec<i32>>()).push((*told).mx) };
@@ -106,7 +106,7 @@ unsafe extern "C" fn note_grid(told: *const contact_normal_progress, user: *mut 
 }
 
 #[test]
-fn it_is_looked_at_after_each_cycle() {
+fn the_stop_integer_is_read_after_each_cycle() {
     let (mut call, mut stop) = (long(), 0);
     call.options.known.user = (&raw mut stop).cast();
     call.options.known.stop = (&raw mut stop).cast_const();
@@ -144,7 +144,7 @@ fn what_is_known_by_name() {
         unsafe { contact_normal_has(name.as_ptr()) }
     };
     assert_eq!(["friction", "adhesion", "max_seconds", "stop", "warnings"].map(has), [1; 5]);
-    // Members and functions.
+    // Names of members and of functions.
     assert_eq!(["neglect_below", "error_ratio", "branch", "previous_coefficient"].map(has), [1; 4]);
     assert_eq!(["quantities", "effects_bill", "coating_compliance"].map(has), [1; 3]);
     assert_eq!(["", "Friction", "friction ", "wear", "magnetism"].map(has), [0; 5]);
@@ -152,7 +152,7 @@ fn what_is_known_by_name() {
     assert_eq!(unsafe { contact_normal_has(std::ptr::null()) }, 0);
 }
 
-/// Other tests of this process keep memory and threads at the same time, so that only bounds hold.
+/// Other tests of this process keep memory and threads at the same time, so that only bounds can be asserted.
 #[test]
 fn what_is_kept_is_released() {
     let kept = || {
@@ -180,7 +180,7 @@ fn what_is_kept_is_released() {
     assert_eq!(unsafe { contact_normal_kept(null_mut(), null_mut()) }, CONTACT_NORMAL_OK);
 }
 
-/// The price list solves on small grids. These are also calls.
+/// A price list solves on small grids. A time limit and the integer end these solves, too.
 #[test]
 fn a_price_list_ends_at_its_limit_of_time_and_by_the_integer() {
     let (mut call, stop) = (Call::new(), 1);

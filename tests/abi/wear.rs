@@ -1,4 +1,4 @@
-//! `contact_normal_frictional_wear`: overlaps, structs, and outputs that a refused call does not write.
+//! `contact_normal_frictional_wear`: overlaps, structs, and outputs, which a refused call does not write.
 
 use std::ptr::{null, null_mut};
 
@@ -52,8 +52,7 @@ fn results_that_overlap_with_anything_are_refused() {
             (call.work.as_mut_ptr(), call.depth.as_mut_ptr(), call.passage.as_mut_ptr(), &mut call.worn);
         spoil(&mut call, &mut to);
         if !std::ptr::eq(to.3, &call.worn) {
-            // The struct must be valid.
-            // SAFETY: room for 6 values of 8 bytes, which are the struct.
+            // The memory is first filled with a valid struct.
             unsafe { to.3.write(call.worn) };
         }
         let before = (call.fields.clone(), call.work.clone(), call.depth.clone(), call.passage.clone(), call.worn.work);

@@ -1,4 +1,5 @@
-//! Quantities, the bill of effects, and neglected effects, at the boundary: rows of the caller's size, refusals by name, no write beyond.
+//! Quantities, the bill of effects, and neglected effects, at the C ABI: rows of the caller's size, refusals with messages that name the argument,
+//! and no write beyond the caller's memory.
 
 use std::ptr::{null, null_mut};
 
@@ -25,7 +26,7 @@ fn of_layer() -> Call {
 fn quantities(call: &Call, n: i32, wanted: *const i32, coarser: i32) -> (i32, Vec<contact_normal_quantity_row>, i32) {
     let struct_size = size_of::<Longer<contact_normal_quantity_row>>() as i64;
     let row = contact_normal_quantity_row { struct_size, ..Default::default() };
-    // n rows for each of up to 13 grids must be memory of the caller without inputs.
+    // There must be room for n rows for each of up to 13 grids, in memory without inputs.
     let mut rows = vec![Longer { row, unknown: -7 }; 26];
     // Unknown members of the first row must be 0.
     rows[0].unknown = 0;
@@ -67,7 +68,7 @@ fn rows_of_quantities_have_the_callers_size() {
         .all(|(row, wanted)| row.quantity == *wanted && row.value > 0.0));
     assert_eq!((rows[1].error, rows[1].lack), (-1.0, CONTACT_NORMAL_LACK_ONE_GRID));
     assert!(rows[3].error > 0.0 && rows[3].lack == CONTACT_NORMAL_LACK_NONE);
-    // There are fewer grids.
+    // There are fewer grids than asked for.
     assert_eq!(quantities(&Call::new(), 2, WANTED.as_ptr(), 3).2, 8);
     assert_eq!(quantities(&Call::new(), 1, WANTED.as_ptr(), 12).0, CONTACT_NORMAL_OK, "{}", last_error());
 }

@@ -1,4 +1,4 @@
-//! The conditions of adhesion, by a direct sum with Love's coefficients, and by independent formulas of the laws.
+//! The contact conditions with adhesion, recomputed by direct sums with Love's coefficients, and by the test's own formulas of the laws.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use contact_normal::adhesion::Law;
 use contact_normal::contact::State;
 use contact_normal::grid::Grid;
 
-/// `u = A p` of half-spaces, by a direct sum: Love 1929, as in Johnson, eq. 3.25.
+/// The displacements u = A p of half-spaces by direct sums (Love 1929, as in Johnson, eq. 3.25).
 pub fn displacements(grid: &Grid, modulus: f64, p: &[f64]) -> Vec<f64> {
     let (mx, my) = (grid.mx as i64, grid.my as i64);
     let side = |a: f64, b: f64| a * (b / a.abs()).asinh() + b * (a / b.abs()).asinh();
@@ -26,7 +26,7 @@ pub fn displacements(grid: &Grid, modulus: f64, p: &[f64]) -> Vec<f64> {
     u
 }
 
-/// sigma(e) by the formulas of docs/adhesion.md.
+/// The attraction sigma(e) of a law, by the formulas of docs/adhesion.md.
 pub fn traction(law: Law, work: f64, range: f64, e: f64) -> f64 {
     let t = e.max(0.0) / range;
     work / range
@@ -41,8 +41,8 @@ pub fn traction(law: Law, work: f64, range: f64, e: f64) -> f64 {
         }
 }
 
-/// The largest violation, with q = p + sigma: of e = 0 in C and e >= 0 outside relative to the distances in C, of q = 0 outside and q >= 0 in C
-/// relative to p.
+/// The largest relative violation of the conditions, with the contact pressure q = p + sigma. In C e = 0, and outside e >= 0, relative to the
+/// distances in C; outside q = 0, and in C q >= 0, relative to p.
 pub fn worst(state: &State, u: &[f64], attraction: impl Fn(usize, f64) -> f64) -> f64 {
     let (mut inside, mut distances, mut outside, mut all) = (0.0, 0.0, 0.0, 0.0);
     let (mut penetration, mut pulled, mut largest) = (0.0f64, 0.0f64, 0.0f64);

@@ -1,4 +1,4 @@
-//! Few cycles: the state agrees with the status, and more cycles do not make it worse.
+//! Solves with few cycles: the state agrees with the status, and more cycles do not make the result worse.
 
 use contact_normal::adhesion::Law;
 use contact_normal::grid::Grid;
@@ -7,8 +7,8 @@ use contact_normal::solver::{Guess, InitialGuess, Options, Outcome, Solver};
 
 use super::support::{adhesion, bodies, Sphere};
 
-/// Waves that are pressed together have two states of one force; in one of them the force falls as the bodies approach. The solve starts there and
-/// looks for the other state. If the cycles end on the way, the state does not have the force.
+/// Waves that are pressed together have two states for one force. In one of them the force falls as the bodies approach, so that it is unstable. The
+/// solve starts there and looks for the other state. If its cycles end on the way, the returned state does not have the force.
 #[test]
 fn the_stable_state_of_a_force_is_found_or_cycles_end() {
     let n = 32;
@@ -46,7 +46,8 @@ fn the_stable_state_of_a_force_is_found_or_cycles_end() {
     assert!(ends[0] > 0 && ends[1] > 0, "{ends:?}");
 }
 
-/// If the cycles end during the descent to a pull, the state is the strongest one that was found, and not one between two states.
+/// If the cycles end while the library follows the unloading to a given pull, the result is the state with the strongest pull that was found, not an
+/// iterate between two states.
 #[test]
 fn more_cycles_do_not_lose_the_state_of_a_pull() {
     let n = 32;
@@ -79,9 +80,10 @@ fn more_cycles_do_not_lose_the_state_of_a_pull() {
     }
 }
 
-/// Given pressures start at the approach of their contact, as those of a handle do. So a replay follows the path of the recorded call.
+/// A solve from given pressures starts at the approach of their contact, as the solve of a handle does from its own. So a replay of a dump follows
+/// the path of the recorded call.
 #[test]
-fn given_pressures_go_on_as_previous_ones_do() {
+fn given_pressures_follow_the_path_of_previous_pressures() {
     let sphere = Sphere::by_tabor(1.0, 48, 3.0);
     let (first, next) = (sphere.scene(Load::Force(-1.1)), sphere.scene(Load::Force(-1.2)));
     let mut solver = Solver::new(&first, &Options::default()).expect("a solver");
@@ -98,7 +100,8 @@ fn given_pressures_go_on_as_previous_ones_do() {
     assert!((other.state().approach - solver.state().approach).abs() < 1e-5);
 }
 
-/// Flat bodies with two periods part at once, at the whole attraction. Below it no contact problem with that attraction has a solution.
+/// Flat bodies with two periods part at once, at a pull of all their attraction. At a stronger one the contact problem with this attraction has no
+/// solution.
 #[test]
 fn flat_bodies_with_two_periods_part_at_once() {
     let grid = Grid::new(4, 4, 1.0, 1.0).expect("a grid");
@@ -110,12 +113,12 @@ fn flat_bodies_with_two_periods_part_at_once() {
     };
     let mut solver = Solver::new(&scene, &Options::default()).expect("a solver");
     let (outcome, report) = solver.pull_off(&scene, &Options::default(), None).expect("a pull-off");
-    // w/rho is 1 on 16 elements.
+    // w/rho is 1, on an area of 16.
     assert_eq!(outcome, Outcome::Converged);
     assert!((report.measures.force + 16.0).abs() < 1e-12, "{:e}", report.measures.force);
 }
 
-/// The contact problems of a descent share the cycles of the solve.
+/// All contact problems on the way to a pull share the cycles that the solve is allowed.
 #[test]
 fn a_descent_takes_no_more_cycles_than_it_may() {
     let n = 64;

@@ -1,12 +1,12 @@
-//! The tangent of an equilibrium by a dense matrix: dF/dapproach, and whether the energy is least there.
+//! The tangent of an equilibrium by a dense matrix: dF/dapproach, and whether the energy has a minimum there.
 //!
 //! ```text
 //! [ A_CC          A_CO r         ]        [ 1 ]      p in C is x, p outside is r x,    r^2: the slope of the attraction
 //! [ r A_OC     r A_OO r - 1      ]  x  =  [ r ]      dF/dapproach is the right-hand side times x
 //! ```
 //!
-//! With elimination from the top the pivots of C are positive. For a fixed contact area the energy has a minimum if all pivots outside C are
-//! negative.
+//! C is the contact area, O the elements outside. By elimination from the top the pivots of C are positive. For a fixed contact area the energy has a
+//! minimum if all pivots outside C are negative.
 
 use contact_normal::adhesion::Law;
 use contact_normal::contact::State;
@@ -17,13 +17,13 @@ use super::certificate::{displacements, traction};
 /// The tangent of a state, by a dense matrix.
 #[derive(Clone, Copy, Debug)]
 pub struct Tangent {
-    /// dF/dapproach.
+    /// The stiffness dF/dapproach.
     pub stiffness: f64,
     /// Whether the energy has a minimum at the approach.
     pub is_least: bool,
 }
 
-/// A of half-spaces, by rows.
+/// The matrix A of half-spaces, by rows.
 pub fn matrix(grid: &Grid, modulus: f64) -> Vec<Vec<f64>> {
     let unit = |i: usize| {
         let mut p = vec![0.0; grid.len()];
@@ -33,7 +33,7 @@ pub fn matrix(grid: &Grid, modulus: f64) -> Vec<Vec<f64>> {
     (0..grid.len()).map(unit).collect()
 }
 
-/// The tangent of a state, for a law with its work and range.
+/// The tangent of a state under a law with its work and range.
 pub fn tangent(grid: &Grid, a: &[Vec<f64>], state: &State, (law, work, range): (Law, f64, f64)) -> Tangent {
     let distance = |i: usize| {
         let u: f64 = a[i].iter().zip(&state.p).map(|(a, p)| a * p).sum();
@@ -59,7 +59,7 @@ pub fn tangent(grid: &Grid, a: &[Vec<f64>], state: &State, (law, work, range): (
         })
         .collect();
     let right: Vec<f64> = order.iter().map(|&(_, r, _)| r).collect();
-    // L D L' without pivoting: stiffness is the sum of (L^-1 right)^2/D.
+    // Factors L D L' without pivoting: the stiffness is the sum of (L^-1 right)^2/D.
     let (mut left, mut stiffness, mut is_least) = (right, 0.0, true);
     for k in 0..rows.len() {
         let pivot = rows[k][k];

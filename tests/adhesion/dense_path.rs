@@ -1,4 +1,5 @@
-//! Pull-off forces beside the least force of an unloading in small steps, by Newton's method with a dense matrix.
+//! Pull-off forces, compared with the least force of an unloading in small steps by Newton's method with a dense matrix. (Pulls are negative forces,
+//! so that the least force is the strongest pull.)
 
 use contact_normal::adhesion::Law;
 use contact_normal::grid::Grid;
@@ -19,7 +20,7 @@ struct Body {
     a: Vec<Vec<f64>>,
 }
 
-/// A state at an approach: pressures, contact area, sum of the pressures.
+/// A state at an approach: the pressures, the contact area, and the sum of the pressures.
 #[derive(Clone)]
 struct At {
     p: Vec<f64>,
@@ -42,7 +43,7 @@ impl Body {
         Scene { adhesion: own, ..Scene::new(self.grid, &self.h, bodies(1.0), load) }
     }
 
-    /// Newton's method at an approach, whose first step keeps the contact.
+    /// Solves by Newton's method at an approach. The first step keeps the contact area.
     fn newton(&self, approach: f64, from: &At) -> Option<At> {
         let (n, a0, by) = (self.h.len(), self.a[0][0], 1e-7 * self.range);
         let sigma = |e: f64| traction(self.law, self.work, self.range, e.max(0.0));
@@ -76,7 +77,8 @@ impl Body {
         None
     }
 
-    /// The least sum of p of an unloading from a state. Steps are halved, at most six times, if Newton's method fails or many elements part at once.
+    /// The least sum of p while the bodies are drawn apart from a state. The steps are halved, at most six times, if Newton's method fails or many
+    /// elements part at once.
     fn least(&self, mut approach: f64, from: At, mut step: f64) -> f64 {
         let (mut here, mut least, mut halved) = (from, f64::INFINITY, 0);
         let count = |at: &At| at.contact.iter().filter(|&&inside| inside).count();
@@ -93,7 +95,7 @@ impl Body {
     }
 }
 
-/// Gaussian elimination with partial pivoting. The right-hand side is the last column.
+/// Solves by Gaussian elimination with partial pivoting. The right-hand side is the last column.
 fn solve(rows: &mut [Vec<f64>]) -> Vec<f64> {
     let n = rows.len();
     for k in 0..n {
@@ -122,7 +124,8 @@ fn pull_off(scene: &Scene<'_>) -> (Solver, f64, f64) {
     (solver, report.measures.force, report.measures.approach)
 }
 
-// Each ring of elements that parts makes a minimum of the force. Steps of a tenth of the contact's length miss the least one of the first sphere by 0.7 %.
+// Each ring of elements that parts causes a minimum of the force. Steps of a tenth of the contact's length miss the least of these minima of the
+// first sphere by 0.7 %.
 #[test]
 fn a_pull_off_is_the_least_of_small_steps() {
     let bodies = [
@@ -140,13 +143,14 @@ fn a_pull_off_is_the_least_of_small_steps() {
         let least = body.least(above, from, (above - approach) / 40.0) * body.grid.element_area();
         assert!(least.is_finite(), "the dense path has no step");
         println!("in small steps {least}");
-        // Steps of 1/40 of the way miss the minimum of a parabola by some 1e-3 of its depth, and so do the small steps of the library.
+        // Steps of 1/40 of the way to a minimum miss it by some 1e-3 of its depth (a parabola), and so do the small steps of the library.
         assert!(found < least * (1.0 - 2e-3), "{found} {least}");
     }
 }
 
-// Elements that barely resolve the attraction: kappa .6 to .92. The forces are those of a dense prototype, with steps of 0.03 in units of Johnson, Kendall
-// and Roberts. The minima at the rings of elements differ by some per cent, and results of different steps by half of that.
+// Elements that barely resolve the attraction, with kappa .6 to .92. The forces are those of a dense prototype with steps of 0.03 in units of
+// Johnson, Kendall and Roberts. The minima at the rings of elements differ by some per cent, so that results of different steps may differ by half of
+// that.
 #[test]
 fn elements_that_hardly_carry_the_attraction_have_a_pull_off() {
     for (tabor, n, half_width, law, kappa, printed) in [

@@ -1,4 +1,4 @@
-//! Ends of searches: bodies apart beyond the range of a law, pulls that no state holds, and the last part of a path.
+//! How searches for a pull end: bodies apart beyond the range of a law, pulls that no state carries, and the last part of a path.
 
 use contact_normal::adhesion::Law;
 use contact_normal::error::Error;
@@ -9,7 +9,7 @@ use contact_normal::solver::{self, InitialGuess, Options, Outcome, Report, Solve
 use super::random::range_of_kappa;
 use super::support::{adhesion, bodies};
 
-/// A paraboloid on elements of given sizes, with its top at a place in elements, and a curvature.
+/// A paraboloid on elements of given sizes. Its top lies at a place given in elements.
 struct Bowl {
     grid: Grid,
     h: Vec<f64>,
@@ -35,7 +35,7 @@ fn pull_off(scene: &Scene<'_>) -> (Solver, Report) {
     (solver, report)
 }
 
-// Bodies are drawn apart beyond the reach of a law of finite range. There all pressures are exactly 0.
+// If bodies are drawn apart beyond the reach of a law of finite range, all pressures are exactly 0, whatever was solved before.
 #[test]
 fn beyond_the_reach_of_a_law_pressures_are_zero_whatever_came_before() {
     let bowl = Bowl::new(12, [1.0, 1.0], [5.3, 5.6], 0.01);
@@ -55,7 +55,8 @@ fn beyond_the_reach_of_a_law_pressures_are_zero_whatever_came_before() {
     }
 }
 
-// Only the highest element touches, and it has no attraction. The descent ends where this element leaves the contact, with a pull-off of 0.
+// Only the highest element is in contact, and it has no attraction. The search ends where it leaves the contact, with a pull-off force of 0, from
+// whatever load.
 #[test]
 fn what_nothing_holds_has_no_pull_off_from_any_load() {
     for (law, deep) in
@@ -80,8 +81,8 @@ fn what_nothing_holds_has_no_pull_off_from_any_load() {
     }
 }
 
-// Contact along the rim of a grid ends at once, and the descent beyond it takes some hundred cycles. The search for a pull has as many cycles as a
-// pull-off.
+// Contact along the rim of a grid ends at once, and following the path beyond this takes some hundred cycles. The search for a given pull may use as
+// many cycles as one for the pull-off force.
 #[test]
 fn a_pull_beyond_a_snap_of_all_is_refused_and_one_that_is_cut_short_says_so() {
     let bowl = Bowl::new(15, [1.0, 1.0], [6.78, 6.866], -0.01142);
@@ -104,12 +105,12 @@ fn a_pull_beyond_a_snap_of_all_is_refused_and_one_that_is_cut_short_says_so() {
     println!("pull-off {least}; cut short at {force}, residual {residual:e}");
     assert_eq!(outcome, Outcome::IterationLimit);
     assert!(report.adhesion.is_some_and(|found| found.is_short) && force < 0.9 * least, "{force}");
-    // The residual is relative to the sum of |p|, which is more than that of p.
+    // The residual is relative to the sum of |p|, which is larger than that of p, and must show that the force is missed.
     assert!(residual > 0.02, "{residual:e} hides that the force is missed");
 }
 
-/// A ball with waves a few elements long, which snap one by one. The path from the unloaded state is short. That from pressed bodies, which holds
-/// more, takes hundreds of cycles.
+/// A ball with waves of a few elements, which snap off one by one. The path from the unloaded state is short. The path from pressed bodies, which
+/// carries stronger pulls, takes hundreds of cycles.
 #[test]
 fn a_pull_is_refused_only_if_each_way_was_gone_to_its_end() {
     let mut bowl = Bowl::new(15, [1.0, 1.0], [7.0, 7.0], 1.0 / 30.0);
@@ -127,7 +128,7 @@ fn a_pull_is_refused_only_if_each_way_was_gone_to_its_end() {
     assert!(matches!(by_cycles(20_000), Err(Error::Infeasible(_))));
 }
 
-/// If the cycles end before an unloaded state is found, the result is not the pressed bodies with which a path begins.
+/// If the cycles end before an unloaded state is found, the result must not be the pressed bodies with which a path begins.
 #[test]
 fn a_pull_that_is_cut_short_does_not_come_back_as_pressed_bodies() {
     let bowl = Bowl::new(24, [0.2, 0.2], [2.3, 2.3], 1.0);
@@ -143,8 +144,9 @@ fn a_pull_that_is_cut_short_does_not_come_back_as_pressed_bodies() {
     }
 }
 
-// A spike stands out of a ball. Without a load only the spike is in contact. The path from pressed bodies to this state needs small steps: steps of
-// 0.3 of the contact's length make the pull-off 1.2 % too weak. A dense path from pressed bodies, in steps of 0.005 of the range, has -5.2603e-3.
+// A spike stands out of a ball, and is alone in contact without a load. On the path from pressed bodies to this state small steps are needed: with
+// steps of 0.3 of the contact's length the pull-off force would be 1.2 % too weak. A dense path from pressed bodies, in steps of 0.005 of the range,
+// has -5.2603e-3.
 #[test]
 fn a_pull_off_on_a_way_to_another_is_as_strong_as_small_steps_find() {
     let mut bowl = Bowl::new(10, [1.0, 0.68], [4.487, 3.195], 0.009834);
@@ -163,7 +165,7 @@ fn a_pull_off_on_a_way_to_another_is_as_strong_as_small_steps_find() {
     }
 }
 
-/// Elements of kappa 0.71 and 0.82 part one after the other. The path down to a given force must not pass the last part of the pull-off.
+/// Elements with kappa of 0.71 and 0.82 part one after the other. The path to a given force must not skip the last part of the path to the pull-off.
 #[test]
 fn a_pull_just_above_the_pull_off_is_held_by_coarse_elements() {
     let cases = [
@@ -198,7 +200,8 @@ fn a_pull_just_above_the_pull_off_is_held_by_coarse_elements() {
     }
 }
 
-/// Lines on which a second asperity holds more than the first ones, in the step in which it parts. A walk from pressed bodies in 2500 steps has these pulls.
+/// Lines on which the last asperity carries a stronger pull than the ones before, in the very step in which it parts. An unloading from pressed
+/// bodies in 2500 steps has these pulls.
 #[test]
 fn the_last_asperity_may_hold_the_most() {
     const ROUGH: [f64; 21] = [
@@ -221,7 +224,7 @@ fn the_last_asperity_may_hold_the_most() {
     }
 }
 
-/// The least force of a walk by approach in small steps.
+/// The least force of an unloading by approach in equal small steps.
 fn walk_down<'a>(at_load: &dyn Fn(Load) -> Scene<'a>, from: f64, to: f64, steps: usize) -> f64 {
     let options = Options { initial_guess: InitialGuess::Previous, ..Options::default() };
     let first = at_load(Load::Approach(from));

@@ -1,11 +1,11 @@
-//! Friction with adhesion: the bound `mu q + tau0` in contact (Derjaguin 1934).
+//! Friction with adhesion: the bound `mu q + tau0` in contact, with the contact pressure q and the shear strength tau0 (Derjaguin 1934).
 
 use contact_normal::scene::{Adhesion, Bodies, Coefficient, Friction, Load, Prescribed, Previous, Scene};
 use contact_normal::solver::{self, Entry, InitialGuess, Options, Outcome, Solver};
 
 use super::support::{Sphere, MODULUS};
 
-/// Two equal bodies with the E* of the sphere: tractions do not change the pressures.
+/// Two equal bodies with the E* of the sphere, so that tractions do not change the pressures.
 fn alike() -> Bodies {
     // E* = G/(1 - nu).
     Bodies { shear_modulus: [0.7 * MODULUS; 2], poisson_ratio: [0.3; 2] }
@@ -27,7 +27,8 @@ fn solved(scene: &Scene<'_>) -> (Solver, solver::Report) {
     (solver, report)
 }
 
-// In full slip the force is that of the bound: mu times the repulsive force, although the total force pulls, plus tau0 times the contact area.
+// In full slip the tangential force is that of the bound: mu times the repulsive force, even if the total normal force pulls, plus tau0 times the
+// contact area.
 #[test]
 fn sliding_takes_the_force_of_contact_pressures_and_of_the_strength() {
     let sphere = Sphere::by_tabor(1.0, 40, 3.0);
@@ -40,7 +41,7 @@ fn sliding_takes_the_force_of_contact_pressures_and_of_the_strength() {
     }
 }
 
-// A part of the contact sticks. Tractions are within the bound, and the given force is reached.
+// A part of the contact sticks. Tractions are within the bound, and the given tangential force is reached.
 #[test]
 fn tractions_lie_within_the_bound_and_slip_is_against_them() {
     let sphere = Sphere::by_tabor(1.0, 40, 3.0);
@@ -67,7 +68,7 @@ fn tractions_lie_within_the_bound_and_slip_is_against_them() {
     assert!(stick > 20 && slip > 20, "{stick} {slip}");
 }
 
-// The tractions equal those with contact pressures and coefficients of the same bound, in a scene without adhesion.
+// The tractions equal those of a scene without adhesion, with the contact pressures and with coefficients of friction that give the same bound.
 #[test]
 fn the_tangential_problem_is_that_of_a_plain_scene_with_this_bound() {
     let sphere = Sphere::by_tabor(1.0, 40, 3.0);
@@ -80,7 +81,7 @@ fn the_tangential_problem_is_that_of_a_plain_scene_with_this_bound() {
     let plain = Scene { adhesion: None, friction: Some(friction), ..given.clone() };
     let options = Options { tolerance: 1e-9, ..Options::default() };
     let (_, same, _) = solver::solve_tangential(&plain, &q, &options, None).expect("a solve");
-    // Calls with given contact pressures use the bound of the scene as well.
+    // The tangential problem with given contact pressures uses the bound of the adhesive scene, too.
     let (_, also, _) = solver::solve_tangential(&given, &q, &options, None).expect("a solve");
     let most = same.traction.iter().map(|q| q[0].abs()).fold(0.0, f64::max);
     let found = solver.friction().expect("friction");
@@ -100,7 +101,7 @@ fn the_tangential_problem_is_that_of_a_plain_scene_with_this_bound() {
     solver::solve_friction_batch(&given, None, &entries, &Options::default(), None, check).expect("a table");
 }
 
-// Steps of loads and shifts: each begins with the tractions of the last step, and a refused step does not change them.
+// Steps of loads and shifts. Each begins with the tractions of the last step, and a refused step does not change them.
 #[test]
 fn a_handle_continues_from_its_tractions() {
     let sphere = Sphere::by_tabor(1.0, 32, 3.0);

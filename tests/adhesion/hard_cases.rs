@@ -1,4 +1,4 @@
-//! Extreme scenes: the right answer, or a status that says what happened.
+//! Extreme scenes end with the right answer or with a status that says what happened.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use contact_normal::solver::{self, Options, Outcome, Progress, Solver};
 
 use super::support::{adhesion, bodies, Sphere, MODULUS};
 
-/// Solves, and checks all values that are returned.
+/// Solves, and checks all values that are returned. Returns the outcome, or the message of a refusal.
 fn solve(scene: &Scene<'_>) -> Result<Outcome, String> {
     let options = Options { max_cycles: 300, ..Options::default() };
     let (solver, outcome, report) = solver::solve(scene, &options).map_err(|error| error.to_string())?;
@@ -66,7 +66,7 @@ fn elements_without_a_surface_stay_exterior() {
 
 #[test]
 fn one_element_has_its_closed_form() {
-    // e = h - approach - a0 w/rho exp(-e/rho): apart, with a0 of Love.
+    // Without contact e = h - approach - a0 w/rho exp(-e/rho), with Love's a0.
     let grid = Grid::new(1, 1, 1.0, 1.0).expect("a grid");
     let (work, range, gap) = (0.02, 1.0, 0.5);
     let h = [gap];
@@ -106,7 +106,7 @@ fn values_that_are_none_are_refused_by_name() {
 }
 
 #[test]
-fn it_can_be_cancelled_at_every_callback() {
+fn a_solve_with_adhesion_can_be_cancelled_at_every_callback() {
     let sphere = Sphere::by_tabor(1.0, 40, 3.0);
     for (start, load, pull_off) in [
         (Start::Auto, Load::Approach(0.3), false),
@@ -116,7 +116,7 @@ fn it_can_be_cancelled_at_every_callback() {
     ] {
         let scene = Scene { adhesion: Some(Adhesion { start, ..sphere.adhesion }), ..sphere.scene(load) };
         let mut solver = Solver::new(&scene, &Options::default()).expect("a solver");
-        // A pull-off has some hundred callbacks: it is cancelled at the first ones, and at every 16th.
+        // A search for the pull-off has some hundred callbacks. It is cancelled at the first ones and at every 16th.
         for at in (1..2000).filter(|at| !pull_off || *at < 8 || at % 16 == 0) {
             let mut calls = 0;
             let mut cancel = |_: &Progress| {

@@ -1,4 +1,4 @@
-//! Loading and unloading: two branches, and a snap from one to the other on each way.
+//! A loop of loading and unloading: two branches, and a jump from one to the other on each way.
 
 use contact_normal::adhesion::Start;
 use contact_normal::scene::{Adhesion, Load, Scene};
@@ -6,7 +6,7 @@ use contact_normal::solver::{InitialGuess, Options, Outcome, Solver};
 
 use super::support::Sphere;
 
-/// (approach, force, whether it jumped) of each step.
+/// Solves at the given approaches one after the other. Returns the approach, the force, and whether the state jumped, for each.
 fn walk(sphere: &Sphere, approaches: &[f64]) -> Vec<(f64, f64, bool)> {
     let adhesion = Some(Adhesion { start: Start::Apart, ..sphere.adhesion });
     let scene = |approach: f64| Scene { adhesion, ..sphere.scene(Load::Approach(approach)) };
@@ -26,7 +26,8 @@ fn walk(sphere: &Sphere, approaches: &[f64]) -> Vec<(f64, f64, bool)> {
     approaches.iter().enumerate().map(step).collect()
 }
 
-// The loop of the prototype (recipes/adhesion/t13.py): Tabor's parameter 3, 128 x 128 elements. The snap-out of JKR's theory is at -.909.
+// The prototype's loop (recipes/adhesion/t13.py): Tabor's parameter 3, 128 x 128 elements. By the theory of Johnson, Kendall and Roberts the bodies
+// snap out at -.909.
 #[test]
 fn the_loop_snaps_in_and_out_where_the_prototype_does() {
     let sphere = Sphere::by_tabor(3.0, 128, 2.0);
@@ -41,7 +42,7 @@ fn the_loop_snaps_in_and_out_where_the_prototype_does() {
     assert!((at(up, -0.6) + 1.5178).abs() < 1e-3, "after it: {}", at(up, -0.6));
     assert!((at(down, -0.9) + 1.1487).abs() < 1e-3, "before the snap-out: {}", at(down, -0.9));
     assert!((at(down, -1.0) + 0.01035).abs() < 1e-4, "after it: {}", at(down, -1.0));
-    // From the snap-in on, both branches are one. The residuals are 1e-6, and the forces differ by a few times that.
+    // After the snap-in both branches are the same. The residuals are 1e-6, and the forces differ by a few times that.
     for k in -6..=1 {
         let approach = 0.1 * f64::from(k);
         assert!(

@@ -1,4 +1,4 @@
-//! Adhesion: every number is compared with a closed form, a printed result, or a certificate by the test's own product.
+//! Adhesion: every number is compared with a closed form, a printed result, or conditions that are recomputed by the test's own product.
 
 mod certificate;
 mod cut_short;

@@ -1,4 +1,4 @@
-//! The sphere of Maugis and Dugdale (Maugis 1992), in the units of `support`.
+//! Maugis' solution for a sphere with Dugdale's law (Maugis 1992), in the units of `support`.
 
 use contact_normal::adhesion::{Law, Start};
 use contact_normal::scene::{Adhesion, Load, Scene};
@@ -6,14 +6,14 @@ use contact_normal::solver::{InitialGuess, Options, Outcome, Solver};
 
 use super::support::Sphere;
 
-/// Force and approach by the radius a and m = c/a.
+/// The force and the approach for the contact radius a and m = c/a, c the radius of the attraction.
 fn force_and_approach(a: f64, m: f64, lambda: f64) -> (f64, f64) {
     let mu = (m * m - 1.0).sqrt();
     let force = a.powi(3) - lambda * a * a * (mu + m * m * mu.atan());
     (force, a * a - 4.0 / 3.0 * a * lambda * mu)
 }
 
-/// The residual of the condition that the attraction ends at the range.
+/// The residual of the condition that the attraction ends where the gap is the range.
 fn condition(a: f64, m: f64, lambda: f64) -> f64 {
     let mu = (m * m - 1.0).sqrt();
     let angle = mu.atan();
@@ -29,7 +29,7 @@ fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Force and approach for a contact radius.
+/// The force and the approach for a contact radius.
 fn at_radius(a: f64, lambda: f64) -> (f64, f64) {
     force_and_approach(a, bisect(1.0, 1e6, |m| condition(a, m, lambda)), lambda)
 }
@@ -39,7 +39,7 @@ fn force_at(approach: f64, lambda: f64) -> f64 {
     at_radius(a, lambda).0
 }
 
-/// The least approach of the branch in contact, at which the bodies snap out.
+/// The least approach of the branch with contact, at which the bodies snap out.
 fn least_approach(lambda: f64) -> f64 {
     (1..2000).map(|k| at_radius(1e-3 * f64::from(k), lambda).1).fold(f64::INFINITY, f64::min)
 }
@@ -55,7 +55,7 @@ fn the_closed_form_is_the_printed_one() {
     }
 }
 
-// The smeared edge of the law causes errors of .0028, .0019 and .0004 on these grids.
+// The tolerances cover the measured errors by the smeared edge of the law: .0028, .0019 and .0004 on these grids.
 #[test]
 fn a_smeared_edge_has_the_forces_of_the_sharp_one() {
     for (lambda, n, half_width, off) in [(0.5, 128, 4.0, 3e-3), (1.0, 128, 3.0, 3e-3), (2.0, 256, 2.4, 5e-4)] {
@@ -75,7 +75,7 @@ fn a_smeared_edge_has_the_forces_of_the_sharp_one() {
     }
 }
 
-// A loop in steps of 0.05: the branch in contact ends at the least approach of Maugis' curve, and the bodies snap in at a larger one.
+// A loop of loading in steps of 0.05. The branch with contact ends at the least approach of Maugis' curve, and the bodies snap in at a larger one.
 #[test]
 fn a_loop_snaps_out_where_maugis_branch_ends() {
     const STEP: f64 = 0.05;
@@ -101,7 +101,8 @@ fn a_loop_snaps_out_where_maugis_branch_ends() {
             snaps.push(approach);
         }
         last = count;
-        // Near the end of the branch the force has a square root. The contact's edge rests at rings of elements: an error of 4e-3.
+        // Near the end of the branch the force is like a square root, and no comparison is made. Elsewhere the edge of the contact rests at rings of
+        // elements, which causes an error of 4e-3.
         if count > 0 && approach > end + 0.2 {
             let closed = force_at(approach, lambda);
             assert!((force - closed).abs() < 6e-3, "{lambda} {approach}: {force} {closed}");

@@ -1,4 +1,4 @@
-//! Adhesion with other effects: solved, or refused by name.
+//! Adhesion together with other effects: solved, or refused with a message that names the effect.
 
 use contact_normal::adhesion::Law;
 use contact_normal::error::Error;
@@ -17,13 +17,13 @@ fn refusal(scene: &Scene<'_>, options: &Options) -> String {
 }
 
 #[test]
-fn effects_that_are_not_solved_with_it_are_refused_by_name() {
+fn effects_that_adhesion_excludes_are_refused_by_name() {
     let sphere = Sphere::by_tabor(1.0, 16, 3.0);
     let plain = sphere.scene(Load::Approach(0.5));
     let friction = Friction::new(0.3);
     let refused = [
         ("pressure_limit", Scene { pressure_limit: Some(PressureLimit(Each::Uniform(1.0))), ..plain.clone() }),
-        // One of the bodies is rigid: tractions change the pressures.
+        // The bodies are unlike, because one is rigid: tractions would change the pressures.
         ("friction", Scene { friction: Some(friction), ..plain.clone() }),
     ];
     for (name, scene) in refused {
@@ -67,7 +67,7 @@ fn sphere_work() -> f64 {
     1.0 / std::f64::consts::PI
 }
 
-// A coating of nearly the substrate's own stiffness changes the result a little.
+// A coating with nearly the stiffness of the substrate changes the result a little.
 #[test]
 fn a_coating_of_nearly_the_same_material_changes_little() {
     let sphere = Sphere::by_tabor(1.0, 32, 3.0);
@@ -81,7 +81,7 @@ fn a_coating_of_nearly_the_same_material_changes_little() {
     assert!(change.abs() < 2e-3 && change != 0.0, "{change}");
 }
 
-// Two spheres side by side, one patch each, whose interaction is scaled. One element between them is in no patch.
+// Two spheres side by side on two patches, whose interaction is scaled. One element between them is in no patch.
 #[test]
 fn patches_scale_the_displacements_by_each_other() {
     let n = 32;
@@ -120,7 +120,7 @@ fn patches_scale_the_displacements_by_each_other() {
                 |_, e| if e.is_finite() { traction(Law::Exponential, sphere_work(), 0.6, e) } else { 0.0 },
             );
         assert!(worst < 2e-6, "{load:?}: {worst:e}");
-        // The spheres interact less than on one body.
+        // The patches reduce the interaction of the spheres, so that the result differs from that without patches.
         let whole = Scene { patches: None, ..scene.clone() };
         let (_, _, whole) = solver::solve(&whole, &Options::default()).expect("a solve");
         assert!(
@@ -149,14 +149,14 @@ fn a_row_and_a_column_have_the_same_share_on_their_border() {
         let sigma = |i: usize| traction(Law::Exponential, work, range, solver.state().h[i] - 0.2 + u[i]);
         let own = (sigma(0) + sigma(n - 1)) / (0..n).map(sigma).sum::<f64>();
         let found = report.adhesion.expect("adhesion").border_share;
-        // Pressures have errors of a residual of 1e-6.
+        // The error of pressures at a residual of 1e-6, and 1e-12 for round-off.
         assert!((found - own).abs() < 1e-5 * own + 1e-12 && own < 1e-3, "{mx} x {my}: {found:e} {own:e}");
         found
     });
     assert!((shares[0] - shares[1]).abs() < 1e-5 * shares[0] + 1e-12, "{shares:?}");
 }
 
-// For a force that pulls the error comes from three grids, as for one that presses.
+// For a pull, as for a force that presses, the error is estimated from three grids.
 #[test]
 fn a_pull_is_solved_to_an_accuracy() {
     let n = 32;

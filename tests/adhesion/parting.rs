@@ -1,4 +1,4 @@
-//! Bodies that are pulled apart: flat and rough ones, and some with elements that are too coarse for the range.
+//! Bodies that are pulled apart: flat ones, rough ones, and some with elements that are too coarse for the range.
 
 use contact_normal::adhesion::{Law, Start};
 use contact_normal::error::Error;
@@ -16,7 +16,7 @@ fn solved(scene: &Scene<'_>) -> (Solver, Report) {
     (solver, report)
 }
 
-/// The pull-off force of a scene, from its load on.
+/// The pull-off force of a scene, with a search that begins at the scene's load.
 fn pull_off(scene: &Scene<'_>) -> f64 {
     let mut solver = Solver::new(scene, &Options::default()).expect("a solver");
     let (outcome, report) = solver.pull_off(scene, &Options::default(), None).expect("a pull-off");
@@ -28,8 +28,8 @@ fn is_infeasible(scene: &Scene<'_>) -> bool {
     matches!(solver::solve(scene, &Options::default()), Err(Error::Infeasible(_)))
 }
 
-// Small versions of seeds 112, 1045, 2786 and 3056 of `campaign --adhesion`. Under a flat punch without a load, contact pressures and attraction are
-// both w/rho, and total pressures are round-off.
+// Small versions of seeds 112, 1045, 2786 and 3056 of `campaign --adhesion`. Under a flat punch without a load the contact pressures and the
+// attraction are both w/rho, so that the total pressures are round-off.
 #[test]
 fn flat_tops_without_a_load_touch_and_carry_nothing() {
     let (n, work) = (24, 1e-3);
@@ -56,7 +56,8 @@ fn flat_tops_without_a_load_touch_and_carry_nothing() {
                     "{law:?}: {}",
                     report.measures.contact_count
                 );
-                // e is 1e-6 of the displacement of an element by w/rho. So pressures are 1e-6 of w/rho, times the condition number of A.
+                // The tolerance of e is 1e-6 of the displacement of an element by w/rho. So pressures have errors of 1e-6 of w/rho, times the
+                // condition number of A.
                 let largest = state.p.iter().fold(0.0, |largest: f64, p| largest.max(p.abs()));
                 assert!(largest < 1e-4 * work / range, "{law:?}: {largest:e} {:e}", work / range);
                 assert!((state.approach - offset).abs() < 1e-5 * range, "{law:?}: {:e}", state.approach - offset);
@@ -65,9 +66,9 @@ fn flat_tops_without_a_load_touch_and_carry_nothing() {
     }
 }
 
-// Kendall 1971: a round flat punch of radius a parts at sqrt(8 pi E* w a^3), as a crack that begins at its edge. The crack's process zone makes the
-// punch smaller. For Dugdale's law it is pi/8 K^2/sigma(0)^2 = pi/4 E* w/sigma(0)^2, 2.2 elements at the shortest range that they resolve. For
-// an exponential law, which has no end, it is assumed to be less than twice as long.
+// Kendall (1971): a round flat punch of radius a parts at sqrt(8 pi E* w a^3), by a crack that begins at its edge. The process zone of the crack
+// makes the punch effectively smaller. For Dugdale's law the zone is pi/8 K^2/sigma(0)^2 = pi/4 E* w/sigma(0)^2 long, 2.2 elements at the shortest
+// range that they resolve. For an exponential law, whose zone has no end, the test assumes less than twice that.
 #[test]
 fn full_contact_is_pulled_off_as_kendalls_punch() {
     let (n, work) = (48, 1e-3);
@@ -93,7 +94,8 @@ fn full_contact_is_pulled_off_as_kendalls_punch() {
     assert!(is_infeasible(&scene(Load::Force(1.1 * least))));
 }
 
-// Small versions of seeds 5155 and 5610 of `campaign --adhesion`: with two periods uniform pressures have no displacement.
+// Small versions of seeds 5155 and 5610 of `campaign --adhesion`. With two periods uniform pressures cause no displacement, so that full contact
+// carries a pull of all the attraction.
 #[test]
 fn full_contact_of_two_periods_holds_a_pull_of_all_attraction() {
     for (law, n) in [(Law::Exponential, 7), (Law::VanDerWaals, 15), (Law::Cubic, 40)] {
@@ -113,7 +115,7 @@ fn full_contact_of_two_periods_holds_a_pull_of_all_attraction() {
     }
 }
 
-// A small version of seed 5546 of `campaign --adhesion`: a law of finite range, and a force of 0, which bodies apart have too.
+// A small version of seed 5546 of `campaign --adhesion`: a law of finite range, and a force of 0, which bodies apart have, too.
 #[test]
 fn a_law_that_ends_leaves_nothing_of_bodies_apart() {
     let n = 24;
@@ -155,7 +157,7 @@ fn rough_surfaces_are_pulled_by_forces() {
     }
 }
 
-// If a single element is unstable (kappa > 1), a load has several states. The solve returns one of them, whose errors are marked as untrusted.
+// If a single element is unstable (kappa > 1), a load has several states. The result is one of them, and its error estimates are marked as untrusted.
 #[test]
 fn elements_that_snap_alone_have_a_certified_state() {
     let mut sphere = Sphere::by_tabor(1.0, 32, 3.0);
@@ -171,8 +173,8 @@ fn elements_that_snap_alone_have_a_certified_state() {
     }
 }
 
-// With two periods the approach is constant while all elements are in contact and the force falls. The pressures of full contact are those of a wave,
-// A^-1 h with A = 2/(E* q) (Johnson 1985, section 13.2), and each element can carry a pull of w/range.
+// With two periods the approach is constant while all elements are in contact and the force falls. In full contact the pressures are those that
+// flatten a wave, h/A with A = 2/(E* q) (Johnson 1985, section 13.2), and each element can carry a pull of w/range.
 #[test]
 fn full_contact_of_two_periods_has_a_pull_off() {
     let (n, options) = (32, Options::default());
@@ -183,14 +185,14 @@ fn full_contact_of_two_periods_has_a_pull_off() {
         let own = adhesion(Law::Exponential, work, range);
         let period = Some(Period { x: true, y: true });
         let scene = |load| Scene { adhesion: Some(own), period, ..Scene::new(grid, &h, bodies(1.0), load) };
-        // In the valley of both waves the pressure is least: pi E* depth less than the mean, twice.
+        // In the common valley of both waves the pressure is least: less than the mean by pi E* depth for each of them.
         let opens = work / range - 2.0 * std::f64::consts::PI * depth;
         let mut solver = Solver::new(&scene(Load::Force(0.0)), &options).expect("a solver");
         let (outcome, report) = solver.pull_off(&scene(Load::Force(0.0)), &options, None).expect("a pull-off");
         let (least, approach) = (report.measures.force, report.measures.approach);
         println!("pull-off {least} at {approach}, full contact ends at {opens}");
         assert_eq!(outcome, Outcome::Converged);
-        // Elements average the wave, to (pi/n)^2/6 of itself, and nothing holds more than all attraction.
+        // Elements average the wave, which reduces it by (pi/n)^2/6. And nothing carries more than the whole attraction.
         assert!(
             approach.is_finite() && least <= -opens * (1.0 - 1e-3) + 1e-6 && least >= -1.000001 * work / range,
             "{least} {opens}"

@@ -1,4 +1,4 @@
-//! The price of accuracy with adhesion.
+//! Price lists, and searches for an accuracy, with adhesion.
 
 use std::thread::sleep;
 use std::time::Duration;
@@ -12,8 +12,8 @@ use contact_normal::solver::{
 
 use super::support::Sphere;
 
-/// With adhesion a single grid has no error estimate, and errors follow from three or four grids. This holds on a slow machine too, where the 35 ms for samples
-/// end with the first one. A callback that sleeps for 50 ms imitates such a machine.
+/// With adhesion a single grid has no error estimate, so that errors are estimated from three or four grids. A price list must do so on a slow
+/// machine, too, where the 35 ms for samples end with the first one. A callback that sleeps for 50 ms imitates such a machine.
 #[test]
 fn prices_come_from_several_grids_on_a_slow_machine() {
     let sphere = Sphere::by_tabor(1.0, 128, 4.0);
@@ -39,7 +39,7 @@ fn prices_come_from_several_grids_on_a_slow_machine() {
     }
 }
 
-/// The message names the scene's grid, not a coarser one that refuses the force as well.
+/// If a pull is refused, the message names the scene's grid, although a coarser one refuses the force, too.
 #[test]
 fn a_pull_that_is_refused_names_its_grid() {
     let sphere = Sphere::by_tabor(1.0, 32, 3.0);
@@ -49,8 +49,8 @@ fn a_pull_that_is_refused_names_its_grid() {
     assert!(message.starts_with("on 32 x 32 elements: "), "{message}");
 }
 
-/// Bodies that attract each other without contact have errors like bodies in contact. A result on a coarse grid is within the target. A target that needs more
-/// than the limit of elements is not met.
+/// Bodies that attract each other without contact have error estimates like bodies in contact. A result on a coarse grid is within the target. A
+/// target that needs more elements than the limit is not met.
 #[test]
 fn bodies_apart_are_solved_to_an_accuracy() {
     let sphere = Sphere::by_tabor(1.0, 8, 3.0);

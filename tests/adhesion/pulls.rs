@@ -1,4 +1,4 @@
-//! Forces that pull: the stable one of two equilibria, and none below the pull-off.
+//! Negative forces (pulls): the stable one of two equilibria is found, and none for a pull stronger than the pull-off force.
 
 use contact_normal::adhesion::Law;
 use contact_normal::error::Error;
@@ -11,7 +11,7 @@ use super::dense::{matrix, tangent};
 use super::random::range_of_kappa;
 use super::support::{adhesion, bodies, range_of, Sphere, MODULUS};
 
-// The prototype's least force is -1.6641, at about -.45, on a path of steps. The unstable state of -1.4 is at -.9006.
+// The prototype's least force is -1.6641, at an approach of about -.45, on a path in steps. The unstable state of the force -1.4 is at -.9006.
 #[test]
 fn a_pull_finds_the_stable_state() {
     let sphere = Sphere::by_tabor(1.0, 64, 3.0);
@@ -28,7 +28,7 @@ fn a_pull_finds_the_stable_state() {
         assert!(approach > -0.55 && approach < below, "{force}: {approach}");
         assert!(found.stiffness.is_some_and(|stiffness| stiffness > 0.0));
         assert!((report.measures.force - force).abs() < 1e-5);
-        // A solve by this approach has the same force.
+        // A solve with this approach gives the same force.
         let (_, by_approach) = sphere.solve(Load::Approach(approach));
         assert!((by_approach.force - force).abs() < 1e-4, "{} {force}", by_approach.force);
     }
@@ -44,12 +44,12 @@ fn the_stiffness_is_a_difference_of_forces() {
             solver::solve(&scene, &Options { tolerance: 1e-8, ..Options::default() }).expect("a solve");
         (report.measures.force, report.adhesion.and_then(|found| found.stiffness).expect("a stiffness"))
     };
-    // Printed by the prototype (t10.py): 1.105 and -1.800, by differences of forces, which vary with the contact area.
+    // The prototype (t10.py) printed 1.105 and -1.800, as differences of forces, which jump with the contact area; hence 3 %.
     for (approach, printed) in [(0.4, 1.105), (-0.9, -1.8)] {
         let (_, stiffness) = at(&sphere, approach);
         assert!((stiffness - printed).abs() < 0.03 * f64::abs(printed), "{approach}: {stiffness} {printed}");
     }
-    // On larger grids the linear systems are solved in parts, and differences of forces are smoother.
+    // On larger grids the library solves the linear systems in parts. Differences of forces are smoother there.
     let fine = Sphere::by_tabor(1.0, 192, 3.0);
     let [(below, _), (_, stiffness), (above, _)] = [0.3, 0.4, 0.5].map(|approach| at(&fine, approach));
     let slope = (above - below) / 0.2;
@@ -65,8 +65,9 @@ fn below_the_pull_off_the_message_says_what_holds() {
     assert_eq!(outcome, Outcome::Converged);
     let least = report.measures.force;
     println!("pull-off {least} at {}, {:.1} work", report.measures.approach, report.count.work_units);
-    // The least force on the prototype's path of steps of .1. The least of all states is lower by that of a parabola through such steps. The
-    // contact's edge rests at rings of elements, so that one approach has several states: paths of other steps find -1.66398 to -1.66410.
+    // -1.6641 is the least force on the prototype's path in steps of .1. The least force of all states is lower by the sag of a parabola between such
+    // steps. Also the edge of the contact rests at rings of elements, so that one approach has several states: paths with other steps find -1.66398
+    // to -1.66410.
     assert!(least < -1.6641 + 2e-4 && least > -1.6641 - 5e-3, "{least}");
     for factor in [1.05, 3.0, 1e3] {
         match solver::solve(&sphere.scene(Load::Force(factor * least)), &Options::default()) {
@@ -105,7 +106,7 @@ fn a_handle_follows_a_pull_from_step_to_step() {
     }
 }
 
-/// Two balls side by side on a grid: for each its radius, and the height of its lowest point.
+/// Two balls side by side on a grid. For each: its radius, and the height of its lowest point.
 fn balls(n: usize, half_width: f64, balls: [(f64, f64); 2]) -> (Grid, Vec<f64>) {
     let d = 2.0 * half_width / n as f64;
     let grid = Grid::new(2 * n, n, d, d).expect("a grid");
@@ -117,7 +118,7 @@ fn balls(n: usize, half_width: f64, balls: [(f64, f64); 2]) -> (Grid, Vec<f64>) 
     (grid, (0..grid.len()).map(h).collect())
 }
 
-// The small ball parts first, and the force rises. Then the large one alone holds more than both did.
+// The small ball parts first, and the force rises. Then the large ball alone carries a stronger pull than both did.
 #[test]
 fn the_least_force_lies_behind_a_minimum_of_less_depth() {
     let (range, options) = (range_of(2.0), Options::default());
@@ -133,12 +134,12 @@ fn the_least_force_lies_behind_a_minimum_of_less_depth() {
     };
     let alone = pull_off([(1.0, 0.0), (1.0, 50.0)]);
     let both = pull_off([(1.0, 0.0), (0.2, 1.2)]);
-    // At the pull-off of the large ball the attraction of the small one is exp(-6) of that in contact.
+    // At the pull-off of the large ball the attraction of the small one has fallen to exp(-6) of that in contact.
     assert!((both - alone).abs() < 5e-3, "{both} {alone}");
 }
 
 // Small scenes like seeds 6, 15, 27, 82, 192 and 291 of `campaign --adhesion`: laws of finite range, and a surface with one high point. Bodies apart
-// are also a state of force 0, but no descent can begin there.
+// are also a state of the force 0, but no path of unloading can begin there.
 #[test]
 fn pulls_on_what_parts_without_a_load_are_held_or_refused() {
     let grid = Grid::new(16, 13, 1.0, 1.0).expect("a grid");
@@ -168,7 +169,7 @@ fn pulls_on_what_parts_without_a_load_are_held_or_refused() {
     }
 }
 
-/// A sphere on n x n elements within 1 x 1, E* = 1, and the range for a kappa.
+/// A sphere on n x n elements within 1 x 1, for E* = 1; and the range that gives `kappa`.
 fn small_sphere(n: usize, radius: f64, (law, work, kappa): (Law, f64, f64)) -> (Grid, Vec<f64>, f64) {
     let d = 1.0 / n as f64;
     let grid = Grid::new(n, n, d, d).expect("a grid");
@@ -203,7 +204,7 @@ fn just_above_the_pull_off_the_stable_state_is_found() {
             let told = report.adhesion.and_then(|found| found.stiffness).expect("a stiffness");
             println!("{law:?} {part}: approach {} of {}, {found:?} {told}", report.measures.approach, least.approach);
             assert!(found.stiffness > 0.0 && found.is_least, "{law:?} {part}: {found:?}");
-            // The stiffness has a relative error of 1e-3. Near the pull-off its terms cancel: hence the absolute tolerance.
+            // The stiffness has a relative error of 1e-3. Near the pull-off its terms cancel, hence the absolute tolerance.
             assert!((told - found.stiffness).abs() < 5e-3 * found.stiffness + 1e-3, "{law:?} {part}: {told} {found:?}");
             assert!(report.measures.approach > least.approach, "{law:?} {part}");
             let u = displacements(&grid, 1.0, &solver.state().p);
@@ -213,7 +214,8 @@ fn just_above_the_pull_off_the_stable_state_is_found() {
     }
 }
 
-// A small ball stands out beyond a large one. Without a load only the small one is in contact. The large one holds more, once it is in contact.
+// A small ball stands out beyond a large one. Without a load only the small one is in contact. Once the large one is in contact, it carries a
+// stronger pull.
 #[test]
 fn a_pull_that_only_pressed_bodies_hold_is_held() {
     let (n, options) = (64, Options::default());
@@ -239,7 +241,7 @@ fn a_pull_that_only_pressed_bodies_hold_is_held() {
     let least = report.measures.force;
     println!("pull-off {least}, {:.0} work", report.count.work_units);
     certified(&solver);
-    // Each ball holds some 1.5 to 2 pi w R, the large one 1.5 to 2.
+    // A ball carries a pull of some 1.5 to 2 pi w R, the large one 1.5 to 2.
     assert!(outcome == Outcome::Converged && least < -1.0, "{least}");
     let (solver, outcome, held) = solver::solve(&scene(Load::Approach(1.6)), &options).expect("a solve");
     assert!(outcome == Outcome::Converged && held.measures.force < -0.9, "{}", held.measures.force);
@@ -253,7 +255,7 @@ fn a_pull_that_only_pressed_bodies_hold_is_held() {
     }
 }
 
-// A handle continues from a state by approach to a force that presses. The nearest equilibrium is unstable.
+// A handle continues from a state by approach to a positive force. The nearest equilibrium of this force is unstable.
 #[test]
 fn a_force_that_presses_finds_a_stable_state_too() {
     let n = 9;

@@ -1,4 +1,4 @@
-//! Scenes drawn at random: none fails, and each is certified by the test's own product.
+//! Random scenes: none fails, and the conditions of each are recomputed with the test's own product.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ use contact_normal::solver::{self, Options, Outcome};
 use super::certificate::{displacements, traction, worst};
 use super::support::{adhesion, bodies, range_of, Sphere, MODULUS};
 
-/// Numbers in [0, 1): Knuth's multiplier.
+/// Pseudo-random numbers in [0, 1), with Knuth's multiplier.
 pub struct Draw(pub u64);
 
 impl Draw {
@@ -28,7 +28,7 @@ impl Draw {
     }
 }
 
-/// kappa of a range on square elements: `steepness w/rho^2 a0`, a0 = 4 d asinh(1)/(pi E*).
+/// The range with a given kappa on square elements: kappa = `steepness w/rho^2 a0`, with a0 = 4 d asinh(1)/(pi E*).
 pub fn range_of_kappa(law: Law, work: f64, d: f64, modulus: f64, kappa: f64) -> f64 {
     (law.steepness() * work * 4.0 * d * 1f64.asinh() / (PI * modulus) / kappa).sqrt()
 }
@@ -58,7 +58,8 @@ fn spheres_of_all_laws_are_solved_and_certified() {
     println!("spheres: median work {}, most {}", products[products.len() / 2], products[products.len() - 1]);
 }
 
-/// Waves of random phases with an rms slope of .1. Amplitudes fall with a power of the wave number.
+/// A surface of waves with random phases, with an rms slope of .1 and amplitudes that fall with a power of the wave number; and the elastic energy
+/// per area that flattens it.
 pub fn rough(n: usize, draw: &mut Draw, hurst: f64) -> (Vec<f64>, f64) {
     let mut waves = Vec::new();
     for kx in 0..=12i32 {
@@ -78,7 +79,7 @@ pub fn rough(n: usize, draw: &mut Draw, hurst: f64) -> (Vec<f64>, f64) {
         };
         -scale * waves.iter().map(wave).sum::<f64>()
     };
-    // The elastic energy per area of full contact, with E* = 1: a wave of amplitude a and wave number q has E* q a^2/8.
+    // The elastic energy per area of full contact, for E* = 1: a wave of amplitude a and wave number q has E* q a^2/8.
     let energy = waves.iter().map(|(_, _, k, a, _)| 2.0 * PI * k * (scale * a).powi(2) / 8.0).sum();
     ((0..n * n).map(at).collect(), energy)
 }
@@ -113,7 +114,7 @@ fn rough_surfaces_are_solved_and_certified() {
     println!("rough: median work {}, most {}", products[products.len() / 2], products[products.len() - 1]);
 }
 
-/// W(e) by the formulas of src/adhesion/law.rs.
+/// The remaining work W(e) of a law, by the formulas of src/adhesion/law.rs.
 fn work_left(law: Law, work: f64, range: f64, e: f64) -> f64 {
     let t = e.max(0.0) / range;
     work * match law {
@@ -156,12 +157,12 @@ fn areas_and_energies_of_rough_surfaces_are_those_of_a_firm_solve() {
             let size = elastic - adhesive;
             assert!((found.elastic_energy - elastic).abs() < 1e-9 * size, "{law:?}: {found:?} {elastic}");
             assert!((found.adhesive_energy - adhesive).abs() < 1e-9 * size, "{law:?}: {found:?} {adhesive}");
-            // An error of the force changes the energy by this error times the approach.
+            // An error of the force changes the energy by this error times the approach, which is subtracted here.
             let total = elastic + adhesive - report.measures.force * state.approach;
             (report.measures.contact_count, total, size)
         };
         let (firm_count, firm, _) = solved(1e-10);
-        // The residual, distances in contact that are not 0, changes the energy in proportion.
+        // The residual (distances in contact that are not 0) changes the energy in proportion.
         for (tolerance, most) in [(1e-6, 1e-6), (1e-7, 3e-7)] {
             let (count, energy, size) = solved(tolerance);
             println!("{law:?} {part}: {count} elements, energies differ by {:e}", (energy - firm) / size);
@@ -171,7 +172,7 @@ fn areas_and_energies_of_rough_surfaces_are_those_of_a_firm_solve() {
     }
 }
 
-// Directions of a linear solve take 8 bytes an element up to eleven, and 4 bytes where there are more.
+// The library stores the directions of a linear solve with 8 bytes an element if there are up to eleven of them, and with 4 bytes if there are more.
 #[test]
 fn rough_surfaces_take_200_bytes_an_element() {
     for (n, part, force) in [(384, 0.1, 1e-3), (192, 0.3, 1e-3), (192, 1.0, 1e-3), (192, 1.0, 4e-3)] {

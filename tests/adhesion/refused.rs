@@ -1,4 +1,4 @@
-//! A refused solve leaves the last result of a handle: its contact pressures, its attraction, and its friction.
+//! A refused solve does not change the last result of a handle: its contact pressures, its attraction, and its friction.
 
 use contact_normal::error::Error;
 use contact_normal::influence::Table;
@@ -35,7 +35,7 @@ fn what_is_refused_leaves_the_split_of_the_pressures() {
         assert!(before.iter().any(|(_, attraction)| *attraction > 0.0));
         refused(&mut solver, &scene);
         assert_eq!(before, split(&solver));
-        // The next solve of the same kind works as before.
+        // The next solve of the handle works as before.
         assert_eq!(solver.solve(&plain, &Options::default(), None, None).expect("a solve").0, Outcome::Converged);
         assert!(solver.adhesion().is_none());
     }
@@ -47,21 +47,21 @@ fn what_is_refused_for_its_friction_leaves_a_result_of_adhesion() {
     let of = |force: f64| {
         let prescribed = [Prescribed::Force(force), Prescribed::Creepage(0.0)];
         let friction = Some(Friction { prescribed, ..Friction::new(0.3) });
-        // Bodies are equal, so that tractions do not change the pressures.
+        // The bodies are equal, so that tractions do not change the pressures.
         let bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
         Scene { friction, bodies, ..sphere.scene(Load::Approach(0.1)) }
     };
     let mut solver = Solver::new(&of(0.1), &Options::default()).expect("a solver");
     assert_eq!(solver.solve(&of(0.1), &Options::default(), None, None).expect("a solve").0, Outcome::Converged);
     let (before, p) = (split(&solver), solver.state().p.clone());
-    // A refused scene with another work of adhesion changes nothing either.
+    // A refused scene with another work of adhesion does not change the result, either.
     let own = Adhesion { work: Work::Uniform(0.1), ..sphere.adhesion };
     refused(&mut solver, &Scene { adhesion: Some(own), ..of(1e3) });
     refused(&mut solver, &of(1e3));
     assert_eq!((before, p), (split(&solver), solver.state().p.clone()));
 }
 
-/// A new table, and coefficients of a refused force, do not change the contact pressures and the attraction of the last result.
+/// A new table, and the coefficients of a refused scene, do not change the contact pressures and the attraction of the last result.
 #[test]
 fn other_coefficients_leave_the_split_of_the_pressures() {
     let sphere = Sphere::by_tabor(1.0, 16, 3.0);
@@ -92,9 +92,9 @@ fn other_coefficients_leave_the_split_of_the_pressures() {
     assert_eq!(before, split(&solver));
 }
 
-/// The stiffness without adhesion does not hold for a result with adhesion, so it is refused.
+/// The stiffness that is computed without adhesion does not hold for a result with adhesion, so that the call is refused.
 #[test]
-fn the_stiffness_of_a_result_of_adhesion_comes_with_it() {
+fn the_stiffness_of_a_result_with_adhesion_is_in_its_report() {
     let sphere = Sphere::by_tabor(1.0, 24, 3.0);
     let scene = sphere.scene(Load::Approach(0.1));
     let mut solver = Solver::new(&scene, &Options::default()).expect("a solver");
@@ -103,7 +103,7 @@ fn the_stiffness_of_a_result_of_adhesion_comes_with_it() {
     assert!(message.contains("adhesion->stiffness"), "{message}");
 }
 
-/// A way back with hysteresis, step by step: a pull that nothing holds is refused, and the next step stays on the branch.
+/// Unloading step by step, on a branch with hysteresis: a pull that no state carries is refused, and the next step stays on the branch.
 #[test]
 fn a_pull_that_is_refused_leaves_the_state_from_which_steps_go_on() {
     let sphere = Sphere::by_tabor(1.0, 24, 3.0);

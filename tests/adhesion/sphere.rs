@@ -1,4 +1,4 @@
-//! A sphere, from JKR to DMT.
+//! A sphere, from the theory of Johnson, Kendall and Roberts (JKR) to that of Derjaguin, Muller and Toporov (DMT).
 
 use std::f64::consts::PI;
 
@@ -9,10 +9,10 @@ use contact_normal::solver::{self, Options, Outcome};
 use super::certificate::{displacements, traction, worst};
 use super::support::{adhesion, bodies, range_of, Found, Sphere, MODULUS};
 
-/// Certificates hold to the tolerance in the library's own units. The test's product adds round-off only.
+/// The library's certificates hold to its tolerance of 1e-6. The test's product adds round-off only.
 const CERTIFIED: f64 = 2e-6;
 
-// Printed by the prototype (recipes/adhesion/t9.py) to four digits. It differs in the coarse grids only.
+// The forces are printed by the prototype (recipes/adhesion/t9.py) to four digits. The prototype differs from the library in the coarse grids only.
 #[test]
 fn forces_of_tabors_parameters_are_those_of_the_prototype() {
     for (tabor, n, half_width, forces) in [
@@ -25,7 +25,7 @@ fn forces_of_tabors_parameters_are_those_of_the_prototype() {
         for (approach, force) in [1.0, 0.0, -0.5].into_iter().zip(forces) {
             let (_, found) = sphere.solve(Load::Approach(approach));
             println!("Tabor {tabor} approach {approach}: {} products, {:.1} work", found.products, found.work_units);
-            // Half of the last digit, and as much for both tolerances.
+            // Half a unit of the last digit, and as much for the tolerances of both programs.
             assert!((found.force - force).abs() < 1e-4, "Tabor {tabor}, approach {approach}: {} {force}", found.force);
             assert!(found.products < 80, "{found:?}");
         }
@@ -52,8 +52,8 @@ fn conditions_of_each_law_hold_by_a_direct_sum() {
     }
 }
 
-// Central differences have the error h^2/6 F''; those of 0.02 and 0.04 combined have one of fourth order. The error of an energy is the square of the
-// residual.
+// The force equals a central difference of the energy. Such differences have the error h^2/6 F''; those of 0.02 and 0.04 combined have an error of
+// fourth order. The error of an energy is of the order of the square of the residual.
 #[test]
 fn the_force_is_the_derivative_of_the_energy() {
     let exponential = (Sphere::by_tabor(1.0, 64, 3.0), -0.3);
@@ -73,7 +73,7 @@ fn the_force_is_the_derivative_of_the_energy() {
     }
 }
 
-// Tabor .1 is nearly DMT, whose pull-off is 2. The prototype has 1.951 by steps on this grid.
+// With Tabor's parameter .1 the result is near the DMT theory, whose pull-off force is 2. The prototype has 1.951 by steps on this grid.
 #[test]
 fn a_long_range_pulls_off_as_dmt() {
     let sphere = Sphere::by_tabor(0.1, 64, 12.0);
@@ -95,7 +95,8 @@ fn a_work_per_element_that_is_the_same_gives_the_same_bits() {
     assert_eq!(solver.state().p, other.state().p);
 }
 
-// Powers of four: the direct solve of a small grid takes square roots of coefficients, and other factors round differently.
+// The factors of units are powers of four, because the direct solve of a small grid takes square roots of coefficients. Other factors would change
+// the rounding.
 #[test]
 fn powers_of_four_in_the_units_give_the_same_bits() {
     let sphere = Sphere::by_tabor(1.0, 32, 3.0);
@@ -125,7 +126,7 @@ fn without_a_work_the_bits_are_those_of_the_plain_scene() {
     }
 }
 
-// Both residuals are 1e-6 of the pressures; the attraction is some 1e-12 of them.
+// Both residuals are 1e-6 of the pressures, and the attraction is some 1e-12 of them.
 #[test]
 fn a_tiny_work_changes_hardly_anything() {
     let sphere = Sphere::by_tabor(1.0, 32, 3.0);
@@ -146,7 +147,7 @@ fn elements_too_coarse_for_the_range_are_said_to_be() {
     let (_, outcome, report) = solver::solve(&coarse.scene(Load::Approach(0.0)), &Options::default()).expect("a solve");
     let found = Found::of(&report);
     assert_eq!(outcome, Outcome::Converged);
-    // kappa = w/rho^2 a0, with Love's a0 = 4 asinh(1)/(pi E*) d of a square element.
+    // The reported resolution is kappa = w/rho^2 a0, with Love's a0 = 4 asinh(1)/(pi E*) d of a square element.
     let d = coarse.grid.dx;
     let kappa = 1.0 / PI / range_of(3.0).powi(2) * 4.0 * d * 1f64.asinh() / (PI * MODULUS);
     assert!((found.adhesion.resolution - kappa).abs() < 1e-9 * kappa, "{} {kappa}", found.adhesion.resolution);

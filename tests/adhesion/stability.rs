@@ -1,4 +1,4 @@
-//! The distance of a state from a snap, 1 - lambda, compared with printed values and with the test's own power iteration.
+//! The stability margin 1 - lambda of a state, which is 0 where it snaps. Compared with printed values and with the test's own power iteration.
 
 use contact_normal::adhesion::{Law, Start};
 use contact_normal::grid::Grid;
@@ -19,7 +19,7 @@ fn solved(sphere: &Sphere, approach: f64) -> (Solver, f64, u64) {
     (solver, found, report.count.matrix_products)
 }
 
-// Printed by the prototype (t10.py), Tabor 1 on 64 x 64, with its own tolerance of 1e-2.
+// Values that the prototype (t10.py) printed for Tabor's parameter 1 on 64 x 64 elements, with its tolerance of 1e-2.
 #[test]
 fn lambda_is_that_of_the_prototype() {
     let sphere = Sphere::by_tabor(1.0, 64, 3.0);
@@ -28,7 +28,7 @@ fn lambda_is_that_of_the_prototype() {
         println!("{approach}: lambda {} for {lambda}, {products} products", 1.0 - found);
         assert!((1.0 - found - lambda).abs() < 1e-2, "{approach}: {} {lambda}", 1.0 - found);
     }
-    // Larger grids solve their linear systems in parts.
+    // On larger grids the library solves the linear systems in parts.
     let fine = Sphere::by_tabor(1.0, 192, 3.0);
     for (approach, lambda) in [(0.4, 0.520), (-0.9, 0.700)] {
         let (_, found, products) = solved(&fine, approach);
@@ -47,7 +47,8 @@ fn lambda_is_the_factor_of_a_power_iteration() {
     }
 }
 
-/// The largest eigenvalue of v -> s A~ v: the attraction v outside, the pressures in C that keep e there, and the slope s of the attraction.
+/// The largest eigenvalue of v -> s A~ v, with the attraction v outside, the slope s of the attraction, and A~ v the displacement outside by v and by
+/// the pressures in C that keep e = 0 there.
 fn power_iteration(sphere: &Sphere, solver: &Solver) -> f64 {
     let (state, grid) = (solver.state(), &sphere.grid);
     assert!(sphere.adhesion.law == Law::Exponential);
@@ -73,7 +74,7 @@ fn power_iteration(sphere: &Sphere, solver: &Solver) -> f64 {
     lambda
 }
 
-/// A (v + x) with x in C such that it is 0 there, by conjugate gradients.
+/// A (v + x), with x in C such that the displacement is 0 there. Solved by conjugate gradients.
 fn with_contact_held(sphere: &Sphere, contact: &[bool], v: &[f64]) -> Vec<f64> {
     let held = |mut field: Vec<f64>| {
         field.iter_mut().zip(contact).filter(|(_, inside)| !**inside).for_each(|(value, _)| *value = 0.0);
@@ -99,7 +100,8 @@ fn with_contact_held(sphere: &Sphere, contact: &[bool], v: &[f64]) -> Vec<f64> {
     product(&x).iter().zip(own).map(|(x, own)| x + own).collect()
 }
 
-// Here Newton's method from contact, or without coarser grids, ends at a saddle of the energy, above the minimum of bodies apart.
+// In these scenes Newton's method from contact, or without coarser grids, ends at a saddle of the energy, above the minimum of bodies apart. The
+// library must find the minimum.
 #[test]
 fn an_approach_finds_a_least_energy() {
     for (n, half, radius, law, work, kappa, part, start) in [

@@ -1,6 +1,6 @@
 //! Spheres in the units of Johnson, Kendall and Roberts, and certificates by products that do not use the library.
 //!
-//! R = 1, w = 1/pi, E* = 3/4: forces in pi w R, radii in (pi w R^2/K)^(1/3), approaches in (pi^2 w^2 R/K^2)^(1/3), with K = 4/3 E* = 1.
+//! R = 1, w = 1/pi and E* = 3/4 give forces in pi w R, radii in (pi w R^2/K)^(1/3), and approaches in (pi^2 w^2 R/K^2)^(1/3), with K = 4/3 E* = 1.
 
 use std::f64::consts::PI;
 
@@ -9,16 +9,16 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Adhesion, Bodies, Load, Scene, Work};
 use contact_normal::solver::{self, Options, Outcome, Solver};
 
-/// E* of the sphere.
+/// The modulus E* of the sphere in these units.
 pub const MODULUS: f64 = 0.75;
 
-/// Two bodies with a given E*.
+/// Two bodies with a given E*, one of them rigid.
 pub fn bodies(modulus: f64) -> Bodies {
     // 1/E* = (1 - nu)/(2 G) of the elastic body.
     Bodies { shear_modulus: [0.5 * modulus, f64::INFINITY], poisson_ratio: [0.0; 2] }
 }
 
-/// Adhesion with a uniform work.
+/// Adhesion with a uniform work of adhesion, and the other members at their defaults.
 pub fn adhesion(law: Law, work: f64, range: f64) -> Adhesion<'static> {
     let (work, start) = (Work::Uniform(work), Start::Auto);
     Adhesion { law, work, range, start, stiffness: false, stability: false, shear_strength: 0.0 }
@@ -32,7 +32,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// A sphere on n x n elements within a half-width.
+    /// A sphere on n x n elements of a square with this half-width.
     pub fn new(n: usize, half_width: f64, law: Law, range: f64) -> Sphere {
         let d = 2.0 * half_width / n as f64;
         let grid = Grid::new(n, n, d, d).expect("a grid");

@@ -1,4 +1,4 @@
-//! A wavy surface in plane strain, in the limit of a short range (Johnson 1995).
+//! A wavy surface with adhesion in plane strain, in the limit of a short range (Johnson 1995).
 
 use std::f64::consts::PI;
 
@@ -9,12 +9,12 @@ use contact_normal::solver::{self, Options, Outcome};
 
 use super::support::{adhesion, bodies};
 
-/// h = D (1 - cos(2 pi x/L)) with L = 1, E* = 1.
+/// The amplitude D of h = D (1 - cos(2 pi x/L)), with L = 1 and E* = 1.
 const DEPTH: f64 = 0.02;
-/// sqrt(2 E* w/L)/p*.
+/// Johnson's parameter alpha = sqrt(2 E* w/L)/p*.
 const ALPHA: f64 = 0.15;
 
-/// a/L for a mean pressure relative to p* = pi E* D/L:  p = sin^2 psi - alpha sqrt(tan psi), psi = pi a/L.
+/// The contact half-width a/L for a mean pressure p relative to p* = pi E* D/L: p = sin^2 psi - alpha sqrt(tan psi), psi = pi a/L.
 fn contact_width(pressure: f64) -> f64 {
     let p = |psi: f64| psi.sin().powi(2) - ALPHA * psi.tan().sqrt();
     let (mut low, mut high) = (0.25, 1.3);
@@ -26,7 +26,7 @@ fn contact_width(pressure: f64) -> f64 {
     0.5 * (low + high) / PI
 }
 
-// The error relative to the limit is of first order in the range.
+// The difference from the limit is of first order in the range.
 #[test]
 fn contact_widths_approach_those_of_the_closed_form_with_the_range() {
     for (pressure, limit) in [(0.0, 0.0925), (0.2, 0.1931), (0.5, 0.3091)] {
@@ -36,12 +36,12 @@ fn contact_widths_approach_those_of_the_closed_form_with_the_range() {
         let wanted = contact_width(pressure);
         let off: Vec<f64> = [512, 2048].into_iter().map(|n| wanted - width(n, pressure, 0.0)).collect();
         println!("{pressure}: off by {off:?}");
-        // The first range is twice the second, and half an element of 512 is .001.
+        // The first range is twice the second one. Half an element of 512 is .001.
         assert!(off[0] > 0.0 && off[0] < 0.03 && off[1] < 0.7 * off[0] + 1e-3, "{pressure}: {off:?}");
     }
 }
 
-// The half-widths are multiples of half an element, printed to four digits.
+// The half-widths are multiples of half an element, and the prototype printed them to four digits.
 #[test]
 fn contact_widths_are_those_that_the_prototype_printed() {
     for (n, range, printed) in [(1024, 0.0485, [0.0820, 0.1836, 0.2988]), (4096, 0.0266, [0.0881, 0.1890, 0.3044])] {
@@ -52,7 +52,7 @@ fn contact_widths_are_those_that_the_prototype_printed() {
     }
 }
 
-/// The half-width of the contact. A range of 0 stands for the shortest range that the elements resolve.
+/// The half-width of the contact on n elements. A range of 0 stands for the shortest range that the elements resolve.
 fn width(n: usize, pressure: f64, range: f64) -> f64 {
     let d = 1.0 / n as f64;
     let grid = Grid::new(n, 1, d, d).expect("a grid");
@@ -70,8 +70,8 @@ fn width(n: usize, pressure: f64, range: f64) -> f64 {
     0.5 * report.measures.contact_count as f64 * d
 }
 
-/// Displacements have no mean, so the mean of the gap is that of `h - approach`. As long as it is positive, some elements are apart, whatever the
-/// start is. A uniform pressure has no displacement, so a large one must not hide the gap.
+/// Displacements have no mean, so that the mean of the gap is that of `h - approach`. As long as it is positive, some elements are apart, whatever
+/// the start is. A uniform pressure causes no displacement, and a large one must not hide the gap.
 #[test]
 fn not_all_touch_above_the_mean_distance() {
     for ((n, my), law) in [
@@ -94,7 +94,7 @@ fn not_all_touch_above_the_mean_distance() {
                 assert_eq!(outcome, Outcome::Converged, "{what}");
                 let state = solver.state();
                 assert!(state.contact.contains(&false), "{what}");
-                // The amplitude of the pressure that flattens the wave is pi E* D/L.
+                // The pressure that flattens the wave has the amplitude pi E* D/L, 30 times of which is ample.
                 let largest = state.p.iter().fold(0.0, |largest: f64, p| largest.max(p.abs()));
                 assert!(largest < 30.0 * PI * DEPTH, "{what}: {largest}");
                 let gaps: f64 = state.u.iter().zip(&h).map(|(u, h)| h - part * DEPTH + u).sum();

@@ -1,4 +1,5 @@
-//! The C clients: the header alone, every example with its expected output and a certificate of the solution that it wrote, a program in C++11.
+//! The C clients: the header compiled alone, every example with its expected output and a certificate of the solution that it wrote, and a program in
+//! C++11.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -15,14 +16,14 @@ const WARNINGS: [&str; 5] = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-
 /// The tolerance that the examples set.
 const TOLERANCE: f64 = 1e-9;
 
-/// A compiler with the warning flags of the repository.
+/// The command of a compiler with the warning flags of the repository.
 pub fn compiler(name: &str, standard: &str) -> Command {
     let mut command = Command::new(name);
     command.arg(format!("-std={standard}")).args(WARNINGS).arg("-I").arg(root().join("include"));
     command
 }
 
-/// Compiles one source against the library in `folder`.
+/// Compiles one source, and links it with the library in `folder`. Returns the program.
 pub fn compile(mut compiler: Command, source: &str, folder: &Path) -> PathBuf {
     let program = folder.join(Path::new(source).file_stem().expect("a file name"));
     compiler.arg("-O2").arg(root().join(source)).arg("-o").arg(&program);
@@ -30,7 +31,7 @@ pub fn compile(mut compiler: Command, source: &str, folder: &Path) -> PathBuf {
     program
 }
 
-/// Compiles and runs an example, compares its output, and returns the certificate of the solution that it wrote.
+/// Compiles and runs an example, and compares its output. Returns the measures of the solution that it wrote, recomputed.
 fn check_example(name: &str, arguments: &[&str]) -> Recomputed {
     let folder = scratch(&format!("c_{name}"));
     let program = compile(compiler("cc", "c99"), &format!("c_examples/{name}.c"), &folder);
@@ -46,7 +47,7 @@ fn check_example(name: &str, arguments: &[&str]) -> Recomputed {
     certificate(&solution)
 }
 
-/// The certificate of a file "mx my dx dy approach", then "h p contact" per element. All examples have two steel bodies.
+/// The measures of a solution in a file: "mx my dx dy approach", then "h p contact" for each element. All examples have two steel bodies.
 fn certificate(solution: &Path) -> Recomputed {
     let text = std::fs::read_to_string(solution).expect("the file that the example wrote");
     let mut lines = text.lines().map(|line| -> Vec<f64> {
@@ -72,7 +73,7 @@ fn assert_force(found: f64, prescribed: f64) {
 
 #[test]
 fn ledger() {
-    // The default tolerance.
+    // The example has the default tolerance.
     assert_certified(&check_example("ledger", &["256"]), 1e-6);
 }
 
@@ -91,7 +92,7 @@ fn wheel_rail() {
     assert_force(measures.force, prescribed.parse().expect("a force"));
 }
 
-/// Files written by the Python package: heights of a rough surface with holes, and a wheel on a rail.
+/// Gaps from files that the Python package wrote: heights of a rough surface with holes, and a wheel on a rail.
 #[test]
 fn gap() {
     let file = gap_file("ground");
@@ -100,14 +101,14 @@ fn gap() {
     assert_force(measures.force, 1.2288);
 }
 
-/// A gap that Python's `Gap.write` wrote.
+/// The path of a gap that Python's `Gap.write` wrote.
 pub fn gap_file(name: &str) -> String {
     root().join(format!("data/gaps/{name}.txt")).to_string_lossy().into_owned()
 }
 
 #[test]
 fn norm_inner_solve() {
-    // The tolerance of its inner solves.
+    // The example's inner solves have a tolerance of 1e-9.
     assert_certified(&check_example("norm_inner_solve", &[]), 1e-9);
 }
 
@@ -127,12 +128,12 @@ fn to_accuracy() {
 fn time_steps() {
     let measures = check_example("time_steps", &[]);
     assert_certified(&measures, TOLERANCE);
-    // The force of the last step, as the example prescribes it.
+    // The force of the last step, as the example computes it.
     let phase = 2.0 * std::f64::consts::PI * 99.0 / 100.0;
     assert_force(measures.force, 80000.0 * (1.0 + 0.1 * phase.sin()));
 }
 
-/// The other examples. Other tests compare their solutions with closed forms and direct sums.
+/// The other examples print what is expected. Other tests compare their solutions with closed forms and direct sums.
 #[test]
 fn the_effects() {
     for name in EXAMPLES_OF_EFFECTS {

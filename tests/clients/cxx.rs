@@ -1,4 +1,5 @@
-//! The C++ header, contact_normal.hpp: its classes keep their promises, pointers that would dangle do not compile, and a time loop takes as long as in C.
+//! The C++ header, contact_normal.hpp: its classes do what they promise, pointers that would dangle do not compile, and a time loop takes as many
+//! instructions as in C.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -8,7 +9,7 @@ use crate::description::Description;
 use crate::generated::header;
 use crate::support::{finished, root, run, run_linked, run_under_valgrind, scratch};
 
-/// The compiler with the warnings of a strict user.
+/// The command of the C++ compiler with the warnings of a strict user.
 fn strict(standard: &str) -> Command {
     let mut strict = compiler("g++", standard);
     strict.arg("-Wshadow");
@@ -25,7 +26,7 @@ fn the_cxx_header_keeps_its_promises_in_20() {
     keeps_its_promises("c++20", run_linked);
 }
 
-/// Joins the checks to one program, because valgrind translates the library anew for each.
+/// Joins the checks in one program, because valgrind would translate the library anew for each program.
 fn keeps_its_promises(standard: &str, run_it: fn(&Path, &[&str], &Path) -> String) {
     let folder = scratch(&format!("cxx_header_{standard}"));
     let parts = [("cxx_header", 52), ("cxx_rest", 78), ("cxx_refusals", 28)];
@@ -58,7 +59,7 @@ fn the_cxx_examples_print_what_is_expected() {
     }
 }
 
-/// The names of the header's parts.
+/// The names of the files of which the C++ header consists.
 fn parts() -> Vec<String> {
     let files = std::fs::read_dir(root().join("include")).expect("include/");
     let names = files.map(|file| file.expect("a file").file_name().into_string().expect("UTF-8"));
@@ -78,7 +79,7 @@ fn each_part_of_the_cxx_header_can_be_included_alone() {
     }
 }
 
-/// The C++ header calls every function of the C header. It sets every member of the C structs, except for those that it hands out unchanged.
+/// The C++ header calls every function of the C header, and sets every member of the C structs, except for structs that it passes on unchanged.
 #[test]
 fn the_cxx_header_has_every_function_and_member_of_the_header() {
     let read = |name: &String| std::fs::read_to_string(root().join("include").join(name)).expect("a part");
@@ -120,7 +121,7 @@ fn the_cxx_header_has_every_function_and_member_of_the_header() {
     }
 }
 
-/// The source before the tested line.
+/// The source code before the tested line.
 const BEGINNING: &str = "#include <contact_normal.hpp>
 #include <array>
 #include <vector>
@@ -135,7 +136,7 @@ cn::scene made_scene();
 const PARAMETERS: &str = "cn::scene &scene, cn::options &how, const std::vector<double> &h, \
 const std::vector<std::int32_t> &integers, const cn::stop_flag &flag, const cn::cycle &cycle, cn::solver &solver";
 
-/// A line that keeps a pointer to a variable, the same line with a temporary, and the deleted function that the compiler then names.
+/// Each: a line that keeps a pointer to a variable, the same line with a temporary, and the deleted function that the compiler names for the latter.
 const LINES: &[(&str, &str, &str)] = &[
     ("scene.undeformed_distance(h);", "scene.undeformed_distance(made());", "borrowed<T>::borrowed(C&&)"),
     ("scene.undeformed_distance(h);", "scene.undeformed_distance(made_const());", "borrowed<T>::borrowed(C&&)"),
@@ -187,7 +188,7 @@ const LINES: &[(&str, &str, &str)] = &[
     ("how.use_cycle(cycle);", "how.use_cycle(cn::cycle());", "use_cycle(const contact_normal_cycle&&)"),
 ];
 
-/// A function of these lines. The first stands in the third line after `BEGINNING`.
+/// Compiles a function that consists of these lines. The first is in the third line after `BEGINNING`.
 fn tried(lines: &[String], folder: &Path) -> Output {
     let source = folder.join("lines.cpp");
     let body = lines.join("\n");
@@ -216,7 +217,7 @@ fn what_would_dangle_does_not_compile() {
     }
 }
 
-/// An array that is read only during the call may be a temporary. So may a span of a variable.
+/// An array that is read only during the call may be a temporary, and so may a span of a variable.
 #[test]
 fn what_does_not_dangle_compiles() {
     let folder = scratch("cxx_temporaries");
@@ -244,7 +245,7 @@ fn instructions(program: &Path, kind: &str, folder: &Path) -> u64 {
     count("60") - count("10")
 }
 
-/// A time loop with a handle: the wrapper adds at most 3 % to the instructions of C.
+/// In a time loop with a handle the C++ wrapper adds at most 3 % to the instructions of C.
 #[test]
 fn the_time_loop_takes_no_more_than_that_of_c() {
     let folder = scratch("cxx_overhead");

@@ -8,7 +8,7 @@ pub struct Constant {
     pub comment: String,
 }
 
-/// A type of the header, as far as the languages differ.
+/// A type of the header, as far as the languages differ in it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     Int32,
@@ -18,14 +18,14 @@ pub enum Kind {
     Struct(String),
     /// A function pointer: a callback of the header.
     Callback(String),
-    /// `T *` or `const T *`; None for an unnamed T (void, char, a handle).
+    /// `T *` or `const T *`. `None` for a T without a layout of its own (void, char, a handle).
     Pointer(Option<Box<Kind>>),
 }
 
 pub struct Member {
     pub name: String,
     pub kind: Kind,
-    /// The length of an array in the struct.
+    /// The length, if the member is an array in the struct.
     pub count: Option<usize>,
 }
 
@@ -42,7 +42,7 @@ impl Struct {
     }
 }
 
-/// A callback: its name, its result (none: void) and its arguments; text is `Pointer(None)` named "text".
+/// A callback: its name, its result (`None`: void) and its arguments. An argument of type text is `Pointer(None)`, and is named "text".
 pub struct Callback {
     pub name: String,
     pub result: Option<Kind>,
@@ -56,10 +56,10 @@ pub struct Description {
 }
 
 impl Description {
-    /// Reads a header: each comment precedes its item.
+    /// Reads a header in which each comment precedes its item.
     pub fn of(header: &str) -> Description {
         let mut found = Description { constants: Vec::new(), structs: Vec::new(), callbacks: Vec::new() };
-        // Callbacks first, because members name them.
+        // Callbacks are read first, because members of structs have their types.
         let mut rest = header;
         while let Some((_, after)) = rest.split_once("\n/*\n") {
             let (comment, code) = after.split_once("*/\n").expect("the end of a comment");
@@ -143,7 +143,7 @@ impl Description {
         }
     }
 
-    /// The structs that have a kind, and so an `_init`: each with the constant whose name ends in the struct's, and its version.
+    /// The structs that have a KIND_ constant, and so an `_init`. Each with this constant, whose name ends in that of the struct.
     pub fn kinds(&self) -> Vec<(&Struct, &Constant)> {
         let of = |name: &str| self.structs.iter().find(|each| each.short_name() == name);
         let kinds = self.constants.iter().filter(|constant| constant.name.starts_with("KIND_"));

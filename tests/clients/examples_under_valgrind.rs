@@ -1,5 +1,5 @@
-//! All examples in C and in Fortran under valgrind, which is some 50 times slower: on small inputs. They are one program, because valgrind translates
-//! the library for each program, and this takes longer than most examples.
+//! All examples in C and in Fortran run under valgrind without errors. Valgrind is some 50 times slower, so that the examples have small inputs. They
+//! are joined in one program, because valgrind translates the library for each program, which takes longer than most examples.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use crate::c::{self, gap_file};
 use crate::fortran;
 use crate::support::{root, run, run_under_valgrind, scratch};
 
-/// Sizes in the examples in C and in Fortran, and smaller ones.
+/// Sizes in the sources of the examples, and the smaller ones that replace them.
 const SIZES: [(&str, &str); 21] = [
     (":: M = 48\n", ":: M = 16\n"),
     ("step = 1, 100", "step = 1, 4"),
@@ -34,10 +34,10 @@ const SIZES: [(&str, &str); 21] = [
     (" m = 80", " m = 20"),
 ];
 
-/// Laws of friction, whose elements have one size: the first creepage, and the first steps.
+/// The example of friction laws, whose elements have a fixed size: only the first creepage, and the first steps.
 const FEWER_STEPS: [(&str, &str); 2] = [("i < 6; i++", "i < 1; i++"), ("step = 1, 60", "step = 1, 10")];
 
-/// An example with smaller sizes, which valgrind runs some 50 times slower. The forces of one need its grid.
+/// The source of an example with smaller sizes. The forces of one example need its grid.
 fn smaller(name: &str, source: &str) -> String {
     let sizes = match name {
         "laws" => &FEWER_STEPS[..],
@@ -47,14 +47,14 @@ fn smaller(name: &str, source: &str) -> String {
     sizes.iter().fold(source.to_owned(), |text, (of, by)| text.replace(of, by))
 }
 
-/// An example that was compiled, and its arguments.
+/// A compiled example, and its arguments.
 struct Example {
     name: String,
     object: PathBuf,
     arguments: Vec<String>,
 }
 
-/// Compiles the examples of a folder of the project, `compile`d each from a smaller source, in a scratch folder.
+/// Compiles the examples of a folder of the project into a scratch folder, by `compile` from smaller sources.
 fn examples(of: &str, extension: &str, folder: &Path, compile: impl Fn(&Path, &Path)) -> Vec<Example> {
     let files = std::fs::read_dir(root().join(of)).expect("the examples").map(|file| file.expect("a file").path());
     let mut sources: Vec<PathBuf> = files.filter(|file| file.extension().is_some_and(|e| e == extension)).collect();
@@ -78,7 +78,7 @@ fn examples(of: &str, extension: &str, folder: &Path, compile: impl Fn(&Path, &P
     sources.into_iter().map(one).collect()
 }
 
-/// A source in C whose `main` runs the examples in turn. The `main` of each gets its name in front.
+/// Writes a source in C whose `main` runs the examples in turn. The `main` of each example is renamed with the name of the example in front.
 fn driver(examples: &[Example], folder: &Path) -> PathBuf {
     let (mut declared, mut calls) = (String::new(), String::new());
     for Example { name, object, arguments } in examples {
@@ -96,7 +96,7 @@ fn driver(examples: &[Example], folder: &Path) -> PathBuf {
     source
 }
 
-/// Links the examples, and the module of those in Fortran, and runs them all; each must print something.
+/// Links the examples with the module of those in Fortran, and runs them all. Asserts that each prints something.
 fn run_all(examples: &[Example], folder: &Path, module: &Path) {
     let (source, object, program) = (driver(examples, folder), folder.join("driver.o"), folder.join("all_examples"));
     run(Command::new("cc").args(["-std=c99", "-c"]).arg(&source).arg("-o").arg(&object));

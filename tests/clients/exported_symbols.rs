@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::support::{root, run, scratch};
 
-/// The symbols of the committed list.
+/// The symbols in include/exported_symbols.txt.
 fn committed() -> Vec<String> {
     let list =
         std::fs::read_to_string(root().join("include/exported_symbols.txt")).expect("include/exported_symbols.txt");

@@ -1,4 +1,5 @@
-//! The Fortran module and examples, compiled with gfortran and run: exports, expected output, certificates, norm_solve.
+//! The Fortran module and examples, compiled with gfortran and run: all exports, expected output, certificates, and the drop-ins norm_solve and
+//! tang_solve.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,14 +18,14 @@ use contact_normal::influence::{Coefficients, HalfSpace};
 /// Every warning is an error: the module must compile cleanly with the strictest users' flags.
 const STRICT: [&str; 5] = ["-std=f2018", "-Wall", "-Wextra", "-pedantic", "-Werror"];
 
-/// The compiler with these flags.
+/// The command of the compiler with these flags.
 pub fn compiler(flags: &[&str]) -> Command {
     let mut gfortran = Command::new("gfortran");
     gfortran.args(STRICT).args(flags);
     gfortran
 }
 
-/// Compiles `source` and the module with `flags`; returns the program.
+/// Compiles `source` and the module with `flags`, and returns the program.
 fn compile(source: &str, flags: &[&str], folder: &Path) -> PathBuf {
     let name = Path::new(source).file_stem().expect("a file name").to_string_lossy().into_owned();
     let (program, module) = (folder.join(name), module(flags));
@@ -35,7 +36,7 @@ fn compile(source: &str, flags: &[&str], folder: &Path) -> PathBuf {
     program
 }
 
-/// The folder of the module, which is compiled once with these flags.
+/// Compiles the module with these flags, unless this has been done, and returns its folder.
 pub fn module(flags: &[&str]) -> PathBuf {
     static COMPILED: Mutex<BTreeMap<String, PathBuf>> = Mutex::new(BTreeMap::new());
     let flags_of_name = flags.concat().replace(['=', ','], "_");
@@ -57,7 +58,7 @@ fn without_times(output: &str) -> String {
     output.lines().filter(|line| !line.starts_with("time")).map(|line| format!("{line}\n")).collect()
 }
 
-/// Runs an example, which must print its expected output. Recomputes the certificate of the arrays that it wrote.
+/// Runs an example, and asserts its expected output. Recomputes the certificate of the arrays that it wrote, and asserts the tolerance.
 fn check_example(name: &str, arguments: &[&str], flags: &[&str], tolerance: f64) {
     let folder = scratch(&format!("fortran_{name}{}", flags.concat().replace(['=', ','], "_")));
     let program = compile(&format!("fortran_examples/{name}.f90"), flags, &folder);
@@ -84,13 +85,13 @@ fn check_example(name: &str, arguments: &[&str], flags: &[&str], tolerance: f64)
 
 #[test]
 fn hertz_prints_what_is_expected() {
-    // The tolerance that the example asks for.
+    // The tolerance is that of the example.
     check_example("hertz", &[], &["-O2"], 1e-8);
 }
 
 #[test]
 fn ledger_prints_what_is_expected() {
-    // The default tolerance.
+    // The example has the default tolerance.
     check_example("ledger", &[], &["-O2"], 1e-6);
 }
 
@@ -103,8 +104,8 @@ fn wheel_rail_case() -> String {
     root().join("data/wheel_rail/y0_10kN.txt").to_string_lossy().into_owned()
 }
 
-/// norm_solve stops at an rms update of eps rms(p). If each iteration reduces the error dp to 0.9 or less, dp is then at most
-/// 10 updates. A smooth p has the largest displacements: `||A dp|| / ||A p||` is at most about `||dp|| / ||p||`.
+/// norm_solve stops at an rms update of eps rms(p). If each iteration reduces the error dp to 0.9 or less, dp is then at most 10 updates. A smooth p
+/// has the largest displacements, so that `||A dp|| / ||A p||` is at most about `||dp|| / ||p||`.
 const PER_UPDATE: f64 = 10.0;
 
 #[test]
@@ -179,7 +180,7 @@ fn tang_solve_without_the_module_is_that_of_the_module() {
     prints("tang_solve_external", [&["-g", "-O1", "-fcheck=all"], &["-O3", "-ffast-math"]], "the same bits\n");
 }
 
-/// A program of this folder prints `expected`, compiled with either set of flags.
+/// Asserts that a program of tests/clients prints `expected`, compiled with either set of flags.
 fn prints(name: &str, both: [&[&str]; 2], expected: &str) {
     for (i, flags) in both.into_iter().enumerate() {
         let folder = scratch(&format!("fortran_{name}_{i}"));
@@ -218,13 +219,13 @@ fn the_module_works_with_other_default_kinds() {
     }
 }
 
-/// Callbacks may call the library with other handles. `-fno-automatic` is usual with Fortran 77.
+/// Callbacks may call the library with other handles. One of the sets of flags has `-fno-automatic`, which is usual with Fortran 77.
 #[test]
 fn callbacks_call_the_library() {
     prints("fortran_callbacks", [&["-g", "-O1", "-fcheck=all"], &["-O2", "-fno-automatic"]], "all hold\n");
 }
 
-/// Runs a program that checks itself, under valgrind: with usual and with wider default integers.
+/// Runs a program that checks itself, under valgrind, with default integers of 4 and of 8 bytes.
 fn all_hold(name: &str) {
     for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O2", "-fdefault-integer-8"]].into_iter().enumerate() {
         let folder = scratch(&format!("{name}_{i}"));
@@ -243,7 +244,7 @@ fn arrays_of_another_shape_are_said() {
     all_hold("fortran_shapes");
 }
 
-/// A part of an array with gaps would be copied, and the copy would be gone when the library reads it.
+/// A part of an array with gaps would be copied, and the copy would no longer exist when the library reads it. The compiler refuses such a part.
 #[test]
 fn arrays_with_gaps_are_refused_at_compile_time() {
     let folder = scratch("fortran_gaps");
@@ -261,8 +262,7 @@ fn arrays_with_gaps_are_refused_at_compile_time() {
     }
 }
 
-/// An array that is no target might be kept in registers while the library writes it: the compiler refuses to attach
-/// it.
+/// An array without the attribute `target` might be kept in registers while the library writes it. The compiler refuses to attach such an array.
 #[test]
 fn arrays_that_are_no_targets_are_refused_at_compile_time() {
     let folder = scratch("fortran_no_target");
@@ -296,7 +296,7 @@ fn the_module_has_every_export_of_the_header() {
     }
 }
 
-/// Each pointer of a struct can be set. The procedures call the struct by the last word of its name, or `given` for a copy.
+/// Each pointer of a struct can be set by the module. Its procedures name the struct by the last word of the struct's name, or `given` for a copy.
 #[test]
 fn the_module_attaches_every_array_of_the_header() {
     let files = std::fs::read_dir(root().join("include")).expect("include/").map(|file| file.expect("a file").path());
@@ -307,7 +307,7 @@ fn the_module_attaches_every_array_of_the_header() {
         let last = each.short_name().rsplit('_').next().expect("a name");
         for member in each.members.iter().filter(|member| matches!(member.kind, Kind::Pointer(_))) {
             let is_set = [last, "given"].iter().any(|of| module.contains(&format!("{of}%{}", member.name)));
-            // Hosts set these two by c_loc.
+            // Programs set these two members themselves, by c_loc.
             let is_plain = member.name == "user" || member.name == "stop";
             assert!(is_set || is_plain, "{}: {}", each.name, member.name);
             count += 1;

@@ -1,6 +1,6 @@
-//! Files made from the description of the ABI: the `_init` functions of the header, the constants, types and `_init` of the Fortran module, the
-//! structs of the Python package, the names that the library finds, and the layout of the structs for the tests. Each file is compared with the
-//! generated one. `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients generated` writes them again, after the header.
+//! Files that are generated from the description of the ABI: the `_init` functions of the header; the constants, types and `_init` of the Fortran
+//! module; the structs of the Python package; the names that the library finds; and the layout of the structs for the tests. Each file is compared
+//! with the generated one. `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients generated` writes the files anew, after the header.
 
 use std::fmt::Write;
 
@@ -42,7 +42,7 @@ fn fortran_types(described: &Description) -> String {
     for each in &described.structs {
         writeln!(text, "\n  type, bind(C), public :: {}", each.name).expect("text");
         for member in &each.members {
-            // The struct_size is 0 before _init: such a structure is refused, not misread.
+            // The struct_size is 0 until `_init` sets it: a structure without `_init` is refused, not misread.
             let (kind, zero) = match &member.kind {
                 Kind::Int32 => ("integer(c_int32_t)".to_owned(), " = 0"),
                 Kind::Int64 => ("integer(c_int64_t)".to_owned(), " = 0"),
@@ -89,7 +89,7 @@ fn fortran_public(described: &Description) -> String {
     text
 }
 
-/// The Python name: contact_normal_pressure_limit is PressureLimit.
+/// The Python name of a struct: that of contact_normal_pressure_limit is PressureLimit.
 fn python_name(name: &str) -> String {
     let words = name.trim_start_matches("contact_normal_").split('_');
     words.map(|word| word[..1].to_uppercase() + &word[1..]).collect()
@@ -119,7 +119,7 @@ fn python_struct(text: &mut String, each: &Struct) {
 
 fn python_callback(text: &mut String, each: &Callback) {
     let argument = |(name, kind): &(String, Kind)| match name.as_str() {
-        // The only argument of type text.
+        // The only argument of a callback that is a text.
         "message" => "c_char_p".into(),
         _ => python_kind(kind),
     };
@@ -138,7 +138,7 @@ from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_v
     .to_owned();
     let mut callbacks: Vec<&Callback> = described.callbacks.iter().collect();
     for each in &described.structs {
-        // A callback precedes the first struct that has it as a member.
+        // The class of a callback precedes the first struct that has it as a member.
         let has = |callback: &&Callback| {
             each.members.iter().any(|member| member.kind == Kind::Callback(callback.name.clone()))
         };
@@ -175,7 +175,7 @@ const DUMPED: [&str; 8] =
 
 /// The structs that a dump may hold, in their order in the header.
 fn dumped(described: &Description) -> Vec<&Struct> {
-    // In the header a struct that points to another stands after it.
+    // In the header a struct comes after those to which it points, so that the list is searched backwards.
     let mut found: Vec<&Struct> = Vec::new();
     for each in described.structs.iter().rev() {
         let pointer = Kind::Pointer(Some(Box::new(Kind::Struct(each.name.clone()))));

@@ -1,5 +1,5 @@
-//! include/contact_normal.h equals the header that cbindgen generates from src/ffi, byte for byte. The versions in all files are equal.
-//! `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients header` writes the header.
+//! include/contact_normal.h equals the header that cbindgen generates from src/ffi, byte for byte, and the versions in all files are equal.
+//! `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients header` writes the header anew.
 
 use std::path::Path;
 
@@ -65,7 +65,7 @@ fn the_committed_header_is_the_generated_one() {
     );
 }
 
-/// The header with the `_init` functions, before the end of the include guard.
+/// Inserts the `_init` functions before the end of the header's include guard.
 fn with_inits(header: &str) -> String {
     let end = header.rfind("\n#endif").expect("the include guard");
     format!("{}{}{}", &header[..end], c_inits(&Description::of(header)), &header[end..])

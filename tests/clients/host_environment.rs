@@ -9,7 +9,7 @@ fn host(part: &str) {
     let folder = scratch(&format!("host_{part}"));
     let program = folder.join("host_environment");
     let mut cc = Command::new("cc");
-    // No constant folding across a change of the rounding mode.
+    // The flag -frounding-math forbids constant folding across a change of the rounding mode.
     cc.args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Werror", "-O1", "-frounding-math"]);
     cc.arg("-I")
         .arg(root().join("include"))

@@ -1,5 +1,5 @@
-//! `make install` agrees with pkg-config: a program compiled with its flags runs, with the shared and with the static library, the version is the
-//! same everywhere, and `make uninstall` leaves no file. `make package-test` also tests CMake, fpm and the wheel.
+//! `make install` and pkg-config agree: a program that is compiled with the flags of pkg-config runs, with the shared and with the static library;
+//! the version is the same everywhere; and `make uninstall` leaves no file. `make package-test` also tests CMake, fpm and the wheel.
 
 use std::path::Path;
 use std::process::Command;
@@ -27,13 +27,13 @@ int main(void)
 }
 "#;
 
-/// Runs `make` for a target with these variables, without the job server of a make that may run these tests.
+/// Runs `make` for a target with these variables, without the job server of a make that may be running these tests.
 fn make(target: &str, variables: &[String]) {
     let mut make = Command::new("make");
     run(make.env_remove("MAKEFLAGS").arg("-C").arg(root()).arg(target).args(variables));
 }
 
-/// Runs `make` with the library that `cargo test` has built beside the test programs, without a second build.
+/// Runs `make` with the library that `cargo test` has built beside the test programs, so that it is not built again.
 fn make_built(target: &str, variables: &[String]) {
     let built = std::env::current_exe().expect("this test's path").parent().expect("its folder").to_owned();
     let built = [
@@ -51,7 +51,7 @@ fn files(folder: &Path) -> Vec<String> {
     found
 }
 
-/// Runs `pkg-config` on the installed package; returns its output, split at blanks.
+/// Runs `pkg-config` on the installed package, and returns the words of its output.
 fn pkg_config(prefix: &Path, arguments: &[&str]) -> Vec<String> {
     let mut command = Command::new("pkg-config");
     command.args(arguments).arg("contact-normal").env("PKG_CONFIG_PATH", prefix.join("lib/pkgconfig"));
@@ -91,7 +91,7 @@ fn the_installed_package_is_what_pkg_config_says() {
     assert_eq!(pkg_config(&prefix, &["--modversion"]), [version]);
     has_links_and_headers(&prefix, version);
 
-    // The replay program runs from the prefix. Without a file it prints its usage.
+    // The installed replay program runs. Without a file it prints its usage.
     let replay = Command::new(prefix.join("bin/contact-normal-replay")).output().expect("the program");
     assert!(String::from_utf8_lossy(&replay.stderr).starts_with("usage: contact-normal-replay FILE"));
 
@@ -102,7 +102,7 @@ fn the_installed_package_is_what_pkg_config_says() {
         let mut gcc = Command::new("gcc");
         gcc.args(["-std=c99", "-Wall", "-o"]).arg(&program).arg(&source).args(&flags);
         if flags.iter().any(|flag| flag == "-static") {
-            // The linker warns of functions that glibc has in its shared form only; none is called.
+            // The linker warns of functions that glibc has in its shared form only. The library calls none of them.
             assert!(gcc.output().expect("gcc").status.success());
         } else {
             run(&mut gcc);
@@ -120,7 +120,7 @@ fn the_installed_package_is_what_pkg_config_says() {
     let sections = run(Command::new("readelf").args(["-SW"]).arg(prefix.join("lib/libcontact_normal.so")));
     assert!(sections.contains(".dynsym") && !sections.contains(".debug_info"), "{sections}");
 
-    // The flags of --static link the static library, although the shared one exists; with -static all libraries are static.
+    // The flags of `pkg-config --static` link the static library, although the shared one exists. With -static all libraries are static.
     for (name, more) in [("static", None), ("all_static", Some("-static"))] {
         let flags = pkg_config(&prefix, &["--static", "--cflags", "--libs"]);
         let fixed = compile(name, more.map(str::to_owned).into_iter().chain(flags).collect());
@@ -130,7 +130,7 @@ fn the_installed_package_is_what_pkg_config_says() {
     }
 }
 
-/// A packager's staging folder receives the files, and no file names it. The library folder is below or beside the prefix.
+/// All files are installed below a packager's staging folder, and no file contains its name. The library folder is below or beside the prefix.
 #[test]
 fn a_packager_chooses_the_folders() {
     let version = env!("CARGO_PKG_VERSION");
@@ -150,19 +150,19 @@ fn a_packager_chooses_the_folders() {
         let described = std::fs::read_to_string(described).expect("a .pc");
         assert!(described.starts_with("prefix=/opt/contact\n") && !described.contains("staged"), "{described}");
         assert!(described.contains(&format!("libdir={told}\n")), "{described}");
-        // Debuggers look for the debug information of /a/b.so in DEBUGDIR/a.
+        // For the library /a/b.so debuggers look in DEBUGDIR/a.
         let real = format!("{libraries}/libcontact_normal.so.{version}");
         assert!(staged.join(format!("opt/debug/{real}.debug")).exists());
         let sections = run(Command::new("readelf").args(["-SW"]).arg(staged.join(real)));
         assert!(sections.contains(".gnu_debuglink") && !sections.contains(".debug_info"), "{sections}");
         cmake_finds(&staged.join(libraries), &staged.join("opt/contact"));
-        // Only empty folders are left.
+        // `make uninstall` leaves only empty folders.
         make_built("uninstall", &variables);
         assert_eq!(files(&staged), [""; 0]);
     }
 }
 
-/// A relocatable installation: pkg-config names the folder in which it is now.
+/// A relocatable installation may be moved: pkg-config gives the folder in which it is now.
 #[test]
 fn an_archive_is_unpacked_anywhere() {
     let folder = scratch("moved_package");
@@ -194,10 +194,10 @@ fn variables_that_do_not_go_together_are_refused() {
     }
 }
 
-/// CMake's file of an installation that was not moved: it names the library in this folder and the headers in that prefix.
+/// Asserts what CMake's file of an installation says: the library in the folder `libraries`, and the headers in the prefix.
 fn cmake_finds(libraries: &Path, prefix: &Path) {
     let script = libraries.join("found.cmake");
-    // A script has no targets: their properties are printed instead.
+    // A CMake script cannot have targets, so that these macros print the properties instead.
     let text = format!(
         "cmake_minimum_required(VERSION 3.10)\nmacro(add_library)\nendmacro()\nmacro(set_target_properties)\nmessage(\"${{ARGN}}\")\nendmacro()\n\
          macro(get_property)\nendmacro()\ninclude({}/cmake/contact-normal/contact-normal-config.cmake)\n",
@@ -209,13 +209,13 @@ fn cmake_finds(libraries: &Path, prefix: &Path) {
     std::fs::remove_file(&script).expect("removed");
     assert!(output.status.success(), "{told}");
     assert!(told.contains(&format!("IMPORTED_LOCATION;{}/libcontact_normal.so", libraries.display())), "{told}");
-    // With DESTDIR an absolute prefix is that of the machine where the files are used.
+    // With DESTDIR an absolute prefix is that on the machine where the files will be used.
     let moved = prefix.join("include");
     let include = if libraries.starts_with(prefix) { moved.as_path() } else { Path::new("/opt/contact/include") };
     assert!(told.contains(&format!("INTERFACE_INCLUDE_DIRECTORIES;{}", include.display())), "{told}");
 }
 
-/// The names of files on other systems: the files of cargo are installed under the names that programs use there.
+/// The names of files on other systems: the files that cargo builds are installed under the names that programs use there.
 #[test]
 fn other_systems_have_their_own_names() {
     let folder = scratch("other_systems");

@@ -11,7 +11,7 @@ use crate::python::python_in;
 use crate::rust_layout::layout;
 use crate::support::{root, run, run_linked, scratch};
 
-/// "struct size" and "struct.member offset" lines, as Rust has them.
+/// The expected lines "struct size" and "struct.member offset", as Rust has them.
 fn expected() -> String {
     let described = Description::of(&header());
     let named = described.structs.iter().map(|each| 1 + each.members.len()).sum::<usize>();
@@ -19,7 +19,7 @@ fn expected() -> String {
     layout().iter().map(|(name, number)| format!("{name} {number}\n")).collect()
 }
 
-/// Compiles a program and runs it with the library.
+/// Compiles a program, runs it with the library, and returns what it printed.
 fn printed(mut compiler: Command, sources: &[&Path], folder: &Path) -> String {
     let program = folder.join("layout");
     compiler.args(sources).arg("-o").arg(&program).arg("-L").arg(folder).arg("-lcontact_normal").current_dir(folder);

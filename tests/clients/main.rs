@@ -1,4 +1,5 @@
-//! The library in C, C++, Fortran and Python programs: header, symbols, the installed package, clients, hosts.
+//! The library in programs in C, C++, Fortran and Python: the header, the symbols, the installed package, the clients, and the host programs'
+//! environment.
 
 mod c;
 mod cxx;

@@ -1,4 +1,4 @@
-//! The documents beside the code: notices of third parties, versions, licences.
+//! The documents that accompany the code: notices of third parties, versions, licences.
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -9,7 +9,7 @@ fn read(name: &str) -> String {
     std::fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// Name and version of every package in Cargo.lock.
+/// The name and version of every package in Cargo.lock.
 fn locked() -> BTreeSet<String> {
     let lock = read("Cargo.lock");
     let value = |line: &str| line.split('"').nth(1).expect("a value").to_owned();
@@ -41,7 +41,7 @@ fn the_notices_name_every_crate_that_is_linked() {
     assert!(linked.len() > 20, "{linked:?}");
     let missing: Vec<_> = linked.difference(&named).collect();
     assert!(missing.is_empty(), "THIRD_PARTY_NOTICES is out of date, run `make notices`; it lacks {missing:?}");
-    // Cargo.lock has the crates of all platforms, and so have the notices.
+    // Cargo.lock has the crates of all platforms, and so have the notices. A notice of any other crate is out of date.
     let known = locked();
     let unknown: Vec<_> = named.difference(&known).collect();
     assert!(

@@ -1,4 +1,4 @@
-//! The Python package: its own tests pass; the examples print what is expected, and their solutions hold.
+//! The Python package: its own tests pass, and its examples print what is expected and have certified solutions.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use contact_normal::scene::Bodies;
 /// The tolerance of python_examples/wheel_rail.py.
 const TOLERANCE: f64 = 1e-9;
 
-/// A Python that has numpy and matplotlib.
+/// The path of a Python that has numpy and matplotlib.
 fn python() -> PathBuf {
     let named = std::env::var_os("PYTHON").map(PathBuf::from);
     let mut tried = String::new();
@@ -32,21 +32,21 @@ fn python() -> PathBuf {
     );
 }
 
-/// A Python with numpy and matplotlib that runs in `folder` and finds the module and the library there.
+/// The command of a Python with numpy and matplotlib that runs in `folder`, and finds the module and the library there.
 pub fn python_in(folder: &Path) -> Command {
     in_folder(Command::new(python()), folder)
 }
 
-/// A Python that runs in `folder` and finds the module and the library there.
+/// Makes a command of Python run in `folder` and find the module and the library there.
 pub fn in_folder(mut command: Command, folder: &Path) -> Command {
     command
         .current_dir(folder)
         .env("CONTACT_NORMAL_LIBRARY", folder.join("libcontact_normal.so"))
         .env("PYTHONPATH", root().join("python"))
         .env("PYTHONDONTWRITEBYTECODE", "1")
-        // Prints the place at which a program hangs.
+        // If a program hangs and is aborted, Python prints the place.
         .env("PYTHONFAULTHANDLER", "1")
-        // matplotlib keeps its cache there, and complains when it cannot.
+        // matplotlib keeps its cache in this folder, and complains if it cannot.
         .env("MPLCONFIGDIR", folder);
     command
 }
@@ -55,7 +55,7 @@ fn number(text: &str) -> f64 {
     text.parse().expect("a number")
 }
 
-/// The measures of the arrays that an example wrote: "mx my dx dy approach", then "h p contact" per element; steel on steel.
+/// The measures of the arrays that an example wrote: "mx my dx dy approach", then "h p contact" for each element. The bodies are of steel.
 fn recomputed(arrays: &Path) -> Recomputed {
     let arrays = std::fs::read_to_string(arrays).expect("the arrays");
     let (first, rows) = arrays.split_once('\n').expect("a first line");
@@ -77,7 +77,7 @@ fn the_tests_of_the_package_pass() {
     let output = finished(command.args(["-m", "unittest", "discover", "-s"]).arg(&tests));
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{told}");
-    // "Ran 15 tests in ...": without any test the run would succeed too.
+    // The output has "Ran 15 tests in ...". The number is compared, because without any test the run would succeed, too.
     let ran = told.lines().find_map(|line| line.strip_prefix("Ran ")?.split(' ').next()?.parse::<usize>().ok());
     let written: usize = std::fs::read_dir(&tests)
         .expect("python/tests")
@@ -108,11 +108,11 @@ fn the_to_accuracy_example_prints_what_is_expected() {
     let printed = run(python_in(&folder).arg(&example).arg("arrays.txt"));
     let expected = std::fs::read_to_string(example.with_extension("expected")).expect("to_accuracy.expected");
     assert_eq!(printed, expected);
-    // The tolerance that the example asks for.
+    // The tolerance is that of the example.
     assert_certified(&recomputed(&folder.join("arrays.txt")), 1e-8);
 }
 
-/// An example that takes the name of its picture: it prints what is expected, and draws one of some size.
+/// Asserts that an example, which takes the name of its picture, prints what is expected and draws a picture of some size.
 fn prints_what_is_expected_and_draws(name: &str) {
     let folder = scratch(&format!("python_{name}"));
     let example = root().join("python_examples").join(name).with_extension("py");
@@ -149,7 +149,7 @@ fn the_example_of_laws_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("laws");
 }
 
-/// A friction law of the program, solved in turns.
+/// A friction law of the example itself, solved in turns.
 #[test]
 fn the_example_of_hot_friction_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("hot_friction");
@@ -165,7 +165,7 @@ fn the_friction_example_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("friction");
 }
 
-/// An example that takes a folder for its pictures and a file for the gap that it makes.
+/// Asserts that an example, which takes a folder for its pictures and a file for its gap, draws the pictures and makes the gap.
 fn makes_the_gap(name: &str, gap: &str, pictures: &[&str]) {
     let folder = scratch(&format!("python_{name}"));
     let example = root().join("python_examples").join(name).with_extension("py");
@@ -177,8 +177,9 @@ fn makes_the_gap(name: &str, gap: &str, pictures: &[&str]) {
         let drawn = std::fs::metadata(&picture).unwrap_or_else(|e| panic!("{}: {e}", picture.display()));
         assert!(drawn.len() > 10_000, "{}: {} bytes", picture.display(), drawn.len());
     }
-    // The examples in C and Fortran read this gap from data/gaps. Another NumPy, or another machine, may round otherwise: the place of a least
-    // distance is known to the root of round-off, 1.5e-8 of lengths of up to 30 mm, and slopes there are less than 1. Measured: 2.4e-7.
+    // The examples in C and Fortran read this gap from data/gaps. Another NumPy, or another machine, may round differently: the place of a least
+    // distance is known to the root of round-off, 1.5e-8 of lengths of up to 30 mm, and slopes there are less than 1. The largest measured difference
+    // is 2.4e-7.
     let distances = |path: &Path| -> Vec<f64> {
         let text = std::fs::read_to_string(path).expect("a gap");
         text.lines().skip(2).flat_map(str::split_whitespace).map(number).collect()
@@ -240,7 +241,7 @@ fn the_wheel_rail_example_prints_what_is_expected_and_draws() {
 
     let measures = recomputed(&folder.join("arrays.txt"));
     assert_certified(&measures, TOLERANCE);
-    // The force that the data file prescribes, up to the round-off of a sum of 8360 terms.
+    // The force is that of the data file, up to the round-off of a sum of 8360 terms.
     let data = std::fs::read_to_string(&data).expect("the data");
     let force = number(data.lines().nth(3).expect("a line of numbers").split(' ').nth(5).expect("a force"));
     assert!((measures.force / force - 1.0).abs() <= 8360.0 * f64::EPSILON, "{measures:?}");
@@ -250,7 +251,7 @@ fn the_wheel_rail_example_prints_what_is_expected_and_draws() {
     let mut decoded = vec![0; reader.output_buffer_size().expect("a size")];
     let info = reader.next_frame(&mut decoded).expect("pixels");
     assert!(info.width >= 800 && info.height >= 600, "{} x {}", info.width, info.height);
-    // A blank page would have one colour; the pressures alone have hundreds.
+    // A blank page would have one colour. The pressures alone have hundreds.
     let pixel = info.line_size / info.width as usize;
     let colours: std::collections::HashSet<&[u8]> = decoded.chunks_exact(pixel).collect();
     assert!(colours.len() > 100, "{} colours", colours.len());
@@ -283,7 +284,7 @@ fn stresses_below_the_surface_print_what_is_expected_and_draw() {
     }
 }
 
-/// Effects of the handle, of its later solves and of batches are those of single calls.
+/// Effects of a handle, of its later solves and of batches give the results of single calls.
 #[test]
 fn a_handle_in_python_keeps_its_effects() {
     let script = "
@@ -406,7 +407,7 @@ target is -1; it must lie between 0 and 1, or be 0 for none
 ";
     let (start, hertz) = printed.split_at(expected.len().min(printed.len()));
     assert_eq!(start, expected);
-    // The paper's problem: the closed form of Rust, which tests of its own compare with tables.
+    // The paper's problem has the values of the closed form in Rust, which other tests compare with tables.
     let compliance = Bodies::same(82000.0, 0.28).compliance();
     let exact = contact_normal::analytic::hertz(0.0016681, 0.0030671, 0.1091, compliance).expect("a contact");
     assert_eq!(hertz.trim(), format!("{:.0} {:.0}", exact.force, exact.max_pressure));

@@ -22,7 +22,7 @@ for name in contact_normal._library.PROTOTYPES:
         .filter(|line| line.starts_with("#define CONTACT_NORMAL_") && line.split(' ').count() == 3)
         .map(str::to_owned)
         .collect();
-    // A prototype begins in the first column; members and comments do not.
+    // A prototype begins in the first column. Members and comments do not.
     ours.extend(
         header
             .lines()

@@ -1,4 +1,4 @@
-//! Differences between the versions of Python.
+//! What depends on the version of Python.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -6,7 +6,7 @@ use std::process::Command;
 use crate::python::in_folder;
 use crate::support::{finished, root, scratch};
 
-/// Signals and pickles differ between versions of Python. The test runs on each version that has numpy.
+/// Signals and pickles differ between versions of Python, so that the test runs on each installed version that has numpy.
 #[test]
 fn signals_and_pickles_work_on_every_python_there_is() {
     let folder = scratch("every_python");

@@ -10,7 +10,7 @@ use crate::support::{root, run, scratch};
 #[allow(dead_code)] // its `main`
 mod build;
 
-/// The commands of a README: indented blocks and fences of sh.
+/// The commands of a README, from indented blocks and fences of sh.
 fn commands(readme: &str) -> String {
     let mut script = String::from("set -e\n");
     let mut is_fenced = false;
@@ -25,7 +25,7 @@ fn commands(readme: &str) -> String {
     script
 }
 
-/// A copy of the project as far as the commands need it, with the library of these tests in place of that of a release.
+/// Makes a copy of the project as far as the commands need it, with the library of these tests in the place of that of a release.
 fn project(folder: &Path) {
     let release = folder.join("target/release");
     let out = release.join("build/contact-normal-0/out");
@@ -59,7 +59,7 @@ fn the_commands_of_the_examples_work_as_printed() {
     }
 }
 
-/// The build of these tests makes this link beside the library, if cargo has put the library at its usual place.
+/// The build makes the link of the soname beside the library, if cargo has put the library at its usual place.
 #[test]
 fn the_build_links_the_soname() {
     let test = std::env::current_exe().expect("this test's path");
@@ -68,7 +68,7 @@ fn the_build_links_the_soname() {
     assert_eq!(link, Path::new("libcontact_normal.so"));
 }
 
-/// At another place there is no link, and no error.
+/// If cargo puts the library elsewhere, there is no link, and no error.
 #[test]
 fn a_build_that_is_laid_out_otherwise_has_no_link() {
     let folder = scratch("no_soname");

@@ -1,5 +1,5 @@
-//! First versions: the comment of each function of the header, and of each procedure of the Fortran module, ends with its first version. The
-//! reference of the site repeats it. names_of_0.1.txt has the names of 0.1.
+//! The comment of each function of the header, and of each procedure of the Fortran module, ends with the version that introduced it. The reference
+//! of the site repeats it. names_of_0.1.txt has the names of version 0.1.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +14,7 @@ fn names_of_0_1(language: &str) -> BTreeSet<String> {
     names
 }
 
-/// The last "Since ..." of a comment.
+/// The version in the last "Since ..." of a comment.
 fn since(comment: &str) -> String {
     let version = comment.rsplit_once("Since ").map_or("nothing", |(_, version)| version);
     version.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect::<String>().trim_end_matches('.').to_owned()
@@ -56,7 +56,7 @@ fn of_fortran() -> BTreeMap<String, String> {
             if let Some((name, _)) = code.and_then(|code| code.split_once('(')) {
                 let is_public = name.starts_with("contact_normal_") || ["norm_solve", "tang_solve"].contains(&name);
                 if is_public {
-                    // Later additions, as optional arguments, stand in parentheses: "(since 0.2)".
+                    // Later additions, such as optional arguments, are noted in parentheses: "(since 0.2)".
                     found.insert(name.to_owned(), since(&comment));
                 }
             }

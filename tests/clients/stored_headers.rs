@@ -1,6 +1,6 @@
-//! Programs and libraries of different versions. Programs that were compiled with the header of a released version run unchanged on today's library:
-//! it writes nothing beyond their structs. Programs of a later header also run on it; members that it does not know are refused by name if they are
-//! set. The headers of released versions are in tests/clients/headers.
+//! Programs and libraries of different versions. A program that was compiled with the header of a released version runs unchanged on today's library,
+//! which writes nothing beyond the program's structs. A program of a later header runs on it, too; if it sets members that the library does not know,
+//! the call is refused, and the message names them. The headers of released versions are in tests/clients/headers.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -30,7 +30,7 @@ fn compiled(include: &Path, folder: &Path, flags: &[&str]) -> PathBuf {
     program
 }
 
-/// Before a version is released its stored header is today's.
+/// Until a version is released, its stored header equals today's.
 #[test]
 fn the_header_of_this_version_is_stored() {
     let version = env!("CARGO_PKG_VERSION");
@@ -61,7 +61,7 @@ fn programs_of_older_headers_run_on_the_library_of_today() {
     }
 }
 
-/// Today's header as that of a later version: each struct that has a kind has two more members.
+/// Writes today's header as that of a later version: each struct that has a kind has two more members.
 fn later_header(folder: &Path) -> PathBuf {
     let mut text = header();
     for (each, _) in Description::of(&text).kinds() {
@@ -82,8 +82,8 @@ fn programs_of_a_later_header_run_on_it_and_are_told_what_it_does_not_know() {
     assert_eq!(run_under_valgrind(&program, &[], &folder), "all as expected\n");
 }
 
-/// Before 0.2.0 each struct had an exported `_init` that wrote the library's whole struct. No such program can start, because its soname was another
-/// one. A program that loads the library by name does not find the function.
+/// Before 0.2.0 each struct had an exported `_init`, which wrote the library's whole struct. Programs of that time cannot start with this library,
+/// because the soname is another one. A program that loads the library by its file name does not find the function.
 #[test]
 fn programs_of_abi_1_cannot_call_the_library() {
     let folder = scratch("abi_1");

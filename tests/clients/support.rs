@@ -32,12 +32,12 @@ pub const EXAMPLES_OF_EFFECTS: [&str; 15] = [
     "own_tables",
 ];
 
-/// The project's root.
+/// The root folder of the project.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// A scratch folder of one test, with `libcontact_normal.so` and its soname in it, as after an installation.
+/// Makes an empty scratch folder for one test, with `libcontact_normal.so` and its soname in it, as after an installation.
 pub fn scratch(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
     let _ = std::fs::remove_dir_all(&folder);
@@ -51,10 +51,11 @@ pub fn scratch(test: &str) -> PathBuf {
     folder
 }
 
-/// The time limit of a program: several times that of the slowest one, under valgrind on a busy machine. A program that hangs fails by it.
+/// The time limit of a program: several times that of the slowest one, which runs under valgrind on a busy machine. A program that hangs fails at
+/// this limit.
 const PATIENCE: Duration = Duration::from_secs(600);
 
-/// Runs a program to its end.
+/// Runs a program to its end, within `PATIENCE`.
 pub fn finished(command: &mut Command) -> Output {
     finished_within(PATIENCE, command)
 }
@@ -87,7 +88,7 @@ fn a_program_that_hangs_is_ended_with_what_it_started() {
     assert_eq!(String::from_utf8_lossy(&output.stdout), "begun\n");
 }
 
-/// Runs a command to its end; it must succeed. Returns what it printed.
+/// Runs a command to its end, and asserts that it succeeds. Returns what it printed.
 pub fn run(command: &mut Command) -> String {
     let output = finished(command);
     let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
@@ -96,13 +97,14 @@ pub fn run(command: &mut Command) -> String {
     out.into_owned()
 }
 
-/// Runs a program that was linked with the library in `folder`.
+/// Runs a program that was linked with the library in `folder`. Returns what it printed.
 pub fn run_linked(program: &Path, arguments: &[&str], folder: &Path) -> String {
     run(Command::new(program).args(arguments).env("LD_LIBRARY_PATH", folder).current_dir(folder))
 }
 
-/// Runs a program that was linked with the library in `folder` under valgrind: no error, and no memory definitely lost. The run-time library of
-/// Fortran keeps memory for its units, and the library's threads for their transforms: it is still reachable, or possibly lost. Returns the output.
+/// Runs a program that was linked with the library in `folder` under valgrind. Asserts that there is no error, and no memory definitely lost. (The
+/// run-time library of Fortran keeps memory for its units, and the library's threads for their transforms; this memory is still reachable, or
+/// possibly lost.) Returns the output.
 pub fn run_under_valgrind(program: &Path, arguments: &[&str], folder: &Path) -> String {
     assert!(
         Command::new("valgrind").arg("--version").output().is_ok(),
@@ -114,7 +116,7 @@ pub fn run_under_valgrind(program: &Path, arguments: &[&str], folder: &Path) -> 
     run(valgrind.arg(program).args(arguments).env("LD_LIBRARY_PATH", without_lines()).current_dir(folder))
 }
 
-/// The library without its line numbers, which valgrind takes seconds to read at each start. The names of functions remain.
+/// The folder of a copy of the library without line numbers, which valgrind takes seconds to read at each start. The names of functions remain.
 fn without_lines() -> &'static Path {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     FOLDER.get_or_init(|| {
@@ -132,13 +134,13 @@ fn without_lines() -> &'static Path {
 pub struct Recomputed {
     /// `||h - approach + A p|| / ||h - approach||` over C.
     pub residual: f64,
-    /// Largest `-e` outside C, over the rms of `h - approach` in C.
+    /// The largest `-e` outside C, over the rms of `h - approach` in C.
     pub violation: f64,
     /// `sum of p |e| / sum of p |u|`.
     pub complementarity: f64,
-    /// Smallest pressure.
+    /// The smallest pressure.
     pub min_pressure: f64,
-    /// Sum of p dx dy.
+    /// The sum of p dx dy.
     pub force: f64,
 }
 
@@ -179,7 +181,7 @@ pub fn recompute(
     }
 }
 
-/// Every measure is at most `tolerance`, as status OK promises.
+/// Asserts that every measure is at most `tolerance`, as status OK promises.
 pub fn assert_certified(measures: &Recomputed, tolerance: f64) {
     assert!(measures.residual <= tolerance, "{measures:?}");
     assert!(measures.violation <= tolerance, "{measures:?}");

@@ -1,5 +1,5 @@
-//! Tables of tangential forces: each entry equals a single solve, for any number of workers. An entry that fails does not affect the others. Calls
-//! have progress and may be cancelled.
+//! Batches of tangential problems: each entry has the result of a single solve, for any number of workers. An entry that fails does not affect the
+//! others. A batch reports its progress and may be cancelled.
 
 use std::sync::Mutex;
 
@@ -30,7 +30,7 @@ fn scene<'a>(h: &'a [f64], friction: Friction<'a>) -> Scene<'a> {
     Scene { friction: Some(friction), ..Scene::new(grid, h, BODIES, Load::Force(1000.0)) }
 }
 
-/// Entries with creepages or forces: three runs, of which the last one is not full.
+/// Entries with creepages or forces: two full runs and a part of a third one (a run is the sequence of entries that one worker solves).
 fn table(friction: &Friction<'_>) -> Vec<Entry> {
     let unit = |k: usize| match (friction.motion, friction.prescribed[k]) {
         (_, Prescribed::Force(_)) => 80.0,
@@ -63,7 +63,7 @@ fn options(threads: usize) -> Options {
 
 type Found = (Ended, Option<Vec<Vector>>);
 
-/// The results of all entries, in order.
+/// Solves the entries. Returns the outcome of the batch, and the report and the tractions of each entry, in the order of the entries.
 fn batch(
     scene: &Scene<'_>,
     pressure: Option<&[f64]>,
@@ -115,7 +115,7 @@ fn each_entry_is_what_a_solve_of_its_own_finds() {
             for k in 0..2 {
                 let off = (found.force[k] - single.force[k]).abs();
                 assert!(off <= 1e-5 * all, "{entry:?}: {:?} {:?}", found.force, single.force);
-                // The scale is the rigid slip at the rim.
+                // Creepages are compared relative to the rigid slip at the rim of the contact, which has a radius of 0.45 M elements.
                 let scale = single.creepage[0].hypot(single.creepage[1]) + entry.spin * 0.45 * M as f64 * D;
                 assert!((found.creepage[k] - single.creepage[k]).abs() <= 1e-4 * scale, "{entry:?}");
             }

@@ -1,5 +1,5 @@
-//! If a solve with a law or a layer is cut short or has a loose tolerance, tractions are still at most mu p with the coefficient at rest, and stick
-//! and slip add up to the contact.
+//! If a solve with a friction law or a plastic layer is cut short or has a loose tolerance, tractions are still at most mu p with the coefficient at
+//! rest. The elements in stick and in slip add up to the contact area.
 
 use contact_normal::effects::{Fall, FrictionLaw, Motion, PlasticLayer};
 use contact_normal::grid::Grid;
@@ -22,7 +22,7 @@ fn check(scene: &Scene<'_>, options: &Options, told: &str) -> usize {
     for (q, p) in found.traction.iter().zip(p) {
         beyond = beyond.max(q[0].hypot(q[1]) - MU * p);
     }
-    // hypot rounds.
+    // The `hypot` of the test rounds: `beyond` is at most a few units of round-off of the largest pressure.
     assert!(beyond <= 1e-15 * report.measures.max_pressure, "{told} {outcome:?}: {beyond:e}");
     let of = report.friction.expect("a report of friction").certificate;
     let contacts = p.iter().filter(|p| **p > 0.0).count();
@@ -59,7 +59,8 @@ fn tractions_are_bounded_where_cycles_end_and_at_loose_tolerances() {
     assert!(cut_short > 50, "{cut_short}");
 }
 
-/// With memory a particle keeps the coefficient of its last place: here twice that of its new one. The bound must be that of the particle.
+/// With memory a particle keeps the coefficient of its last place, which is here twice that of its new one. The bound of its traction is that of the
+/// particle's coefficient.
 #[test]
 fn with_memory_the_bound_is_that_of_what_particles_bring() {
     let (grid, h) = ball((24, 24), 0.02);

@@ -1,4 +1,5 @@
-//! Several solutions of one step: those that CONTACT found from below and from above (its example veldep_fric; eve70a/CONTACT).
+//! A step with a falling friction law may have several solutions. Those found from below (branch LOW) and from above (branch HIGH) are compared with
+//! the output of CONTACT (its example veldep_fric; eve70a/CONTACT).
 
 use contact_normal::friction::{Report, Request, Solver};
 use contact_normal::grid::Grid;
@@ -9,7 +10,8 @@ use super::laws::{off_by, pressures, solver};
 
 const FORCE: f64 = 622_216.0;
 
-/// For each case from the fourth on, all from above: `Fx/(.3 N)` and the number of sticking elements, with one line for each rise of the force.
+/// What CONTACT printed for cases 4 to 53, all solved from above: `Fx/(.3 N)` and the number of sticking elements. Each line is one rise of the
+/// force.
 #[rustfmt::skip]
 pub const PRINTED: [(f64, usize); 50] = [
     (0.5702, 34), (0.5739, 79), (0.5774, 77), (0.5806, 75), (0.5835, 73), (0.5860, 71), (0.5882, 69),
@@ -60,12 +62,12 @@ impl Cylinder {
         report
     }
 
-    /// mu N at rest.
+    /// mu N with the coefficient at rest.
     pub fn carried(&self) -> f64 {
         0.3 * FORCE
     }
 
-    /// A solver after steady rolling, which has one solution, whatever the start.
+    /// A solver whose last solution is that of steady rolling. Steady rolling has one solution here, from whatever start.
     pub fn rolling(&self, branch: Branch) -> Solver {
         let mut solver = solver(&self.grid);
         let report = self.step(&mut solver, ROLLING, branch);
@@ -78,12 +80,12 @@ pub fn part(report: &Report) -> f64 {
     report.force[0] / (0.3 * FORCE)
 }
 
-/// The motion before the first step.
+/// Steady rolling before the first step: the motion, and the creepage.
 pub const ROLLING: (Motion, f64) = (Motion::SteadyRolling, -0.0009999);
 
 pub const STEP: (Motion, f64) = (Motion::TransientRolling, -0.001);
 
-/// Carter's problem: `Fx/(.3 N)` and elements that stick.
+/// Carter's problem with a falling coefficient. Compared are `Fx/(.3 N)` and the number of sticking elements.
 #[test]
 fn steady_and_transient_rolling_without_memory_are_those_of_contact() {
     let cylinder = Cylinder::new();
@@ -93,7 +95,7 @@ fn steady_and_transient_rolling_without_memory_are_those_of_contact() {
     assert_eq!(report.certificate.stick_count, 45);
     let report = cylinder.step_to(1e-8, &mut solver, STEP, Branch::Near);
     println!("{} {:?}", part(&report), report);
-    // Three solutions: from below, from what is carried, from above.
+    // The step has three solutions: from below, from the tractions of the step before, and from above. The branch NEAR may find any of them.
     let found = [(0.5977, 77), (0.5941, 45), (0.5703, 34)];
     let is_one = |(force, sticks): &(f64, usize)| {
         (part(&report) - force).abs() <= 1e-4 && report.certificate.stick_count == *sticks
@@ -107,15 +109,15 @@ fn a_step_has_the_solutions_from_below_and_from_above() {
     for (branch, force, sticks) in [(Branch::Low, 0.5977, 77), (Branch::High, 0.5702, 34)] {
         let report = cylinder.step(&mut cylinder.rolling(branch), STEP, branch);
         println!("{branch:?} {} {} products {}", part(&report), report.certificate.stick_count, report.products);
-        // From below .59764 for .5977.
+        // Half a unit of the last digit. From below the library has .59764 where CONTACT printed .5977: .6 units.
         assert!(off_by(part(&report), force) <= if branch == Branch::High { 0.5 } else { 0.6 }, "{report:?}");
         assert_eq!(report.certificate.stick_count, sticks);
     }
 }
 
-/// 50 steps from above, a sawtooth of stick and slip. 40 forces have the four printed digits, and ten differ by less than one unit of the last digit. The
-/// numbers of sticking elements are as printed, except for one element in one step, which is at its bound. The differences are errors of CONTACT: with a
-/// hundredth of the tolerance no force of the library changes by a thousandth of the last digit.
+/// 50 steps from above, whose forces are a sawtooth of stick and slip. 40 forces have the four printed digits, and ten differ by less than one unit
+/// of the last digit. The numbers of sticking elements are as printed, except for one element in one step, which is at its bound. CONTACT's tolerance
+/// causes the differences: with a hundredth of its tolerance no force of the library changes by a thousandth of the last digit.
 #[test]
 fn stick_and_slip_in_turns_is_that_of_contact() {
     let cylinder = Cylinder::new();
@@ -136,7 +138,7 @@ fn stick_and_slip_in_turns_is_that_of_contact() {
         if off > 0.5 {
             others.push(k + 4);
         }
-        // CONTACT ends where an outer iteration changes slips by less than 1e-3.
+        // The bound is one unit of the last printed digit: CONTACT's outer iteration ends when slips change by less than 1e-3 (see stopping_rule.rs).
         assert!(off < 1.0, "case {}: {found} {force}", k + 4);
         assert!(report.certificate.stick_count.abs_diff(sticks) <= 1, "case {}", k + 4);
         other += usize::from(report.certificate.stick_count != sticks);

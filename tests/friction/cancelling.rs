@@ -15,10 +15,11 @@ use super::support::ball;
 
 const LIKE: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
 const UNLIKE: Bodies = Bodies { shear_modulus: [1.0, 4.0], poisson_ratio: [0.1, 0.4] };
-/// Without Poisson's ratio tractions have displacements in their own direction only.
+/// With a Poisson's ratio of 0 tractions displace the surface in their own direction only.
 const WITHOUT_POISSON: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.0; 2] };
 
-/// Runs once to count the calls, then cancels at each of them in turn. `run` returns the outcome. Returns the number of calls.
+/// Solves once to count the calls of the callback, then once for each of them, cancelled at that call. `run` solves and returns the outcome. Returns
+/// the number of calls.
 fn cancelled_once(what: &str, mut run: impl FnMut(ProgressCallback<'_>) -> Outcome) -> usize {
     let mut all = 0;
     let whole = run(&mut |_: &Progress| {
@@ -32,7 +33,7 @@ fn cancelled_once(what: &str, mut run: impl FnMut(ProgressCallback<'_>) -> Outco
             calls += 1;
             calls == at
         });
-        // The last call for stresses comes with all depths done.
+        // The last call for stresses comes when all depths are done, so that there is nothing left to cancel.
         let expected = if what == "stresses" && at == all { Outcome::Converged } else { Outcome::Cancelled };
         assert_eq!((stop, calls), (expected, at), "{what}: cancelled at call {at} of {all}");
     }
@@ -48,7 +49,7 @@ fn pushed(motion: Motion, by_force: bool) -> Friction<'static> {
     Friction { motion, prescribed, spin: if by_force { 0.0 } else { 1e-3 }, ..Friction::new(0.4) }
 }
 
-/// A solve on a handle, whose result must be complete: finite, and within its bounds.
+/// Solves on a handle. The result must be complete: all numbers are finite, and pressures and tractions are within their bounds.
 fn on_a_handle<'s>(
     scene: &Scene<'s>,
     options: &Options,
@@ -84,7 +85,7 @@ fn the_normal_problem_by_every_method() {
     let limit = Some(PressureLimit(Each::Uniform(0.01)));
     for load in [Load::Force(0.03), Load::Approach(0.015)] {
         let plain = Scene::new(grid, &h, LIKE, load);
-        // Iterates reach this limit, but the result does not, so that a second solve has no limit.
+        // The limit is above the largest pressure of the solution: iterates reach it, but the result has the pressures of the scene without a limit.
         let largest = solve(&plain, &Options::default()).expect("a solve").2.measures.max_pressure;
         let above = Some(PressureLimit(Each::Uniform(1.0001 * largest)));
         let scenes = [

@@ -1,4 +1,5 @@
-//! Friction of equal coated bodies: motions, forces and derivatives compared with direct sums; closed forms of thin layers; refusals.
+//! Friction of two equal coated bodies: motions, forces and derivatives compared with direct sums, thin layers compared with closed forms, and
+//! refusals.
 
 use contact_normal::error::Error;
 use contact_normal::friction::{Compliance, Report, Solution, Solver, Tangential, Vector};
@@ -14,14 +15,14 @@ use super::dense;
 use super::steady_scenes::ellipse;
 use super::support::{ball, residual_by, run};
 
-/// The coefficients of two equal bodies: a layer of thickness t with `1/G1 = 1`, on a substrate with `G2 = 1/mu`.
+/// The tangential coefficients of two equal bodies: a layer of thickness t with `1/G1 = 1` on a substrate with `G2 = 1/mu`.
 pub fn coated(grid: &Grid, t: f64, mu: f64, [nu1, nu2]: [f64; 2]) -> Tangential {
     let [surface, below] =
         [(1.0, nu1), (mu, nu2)].map(|(shear, nu)| Compliance { shear, poisson: shear * nu, unlike: 0.0 });
     Tangential::of_coated(grid.dx, grid.dy, surface, (Coat::new(t, mu, [nu1, nu2]), below))
 }
 
-/// Thickness in contact radii, G1/G2, and the Poisson ratios of layer and substrate.
+/// Coatings: the thickness in contact radii, G1/G2, and the Poisson ratios of layer and substrate.
 const COATS: [(f64, f64, [f64; 2]); 4] =
     [(0.2, 0.0, [0.45, 0.3]), (0.5, 0.05, [0.0, 0.4]), (0.1, 8.0, [0.25, 0.3]), (2.0, 60.0, [0.3, 0.2])];
 
@@ -36,7 +37,7 @@ fn motions(scale: f64) -> Vec<Friction<'static>> {
         prescribed: creepages.map(|_| Prescribed::Creepage(-scale)),
         ..shift
     };
-    // By parts of an element, and not along x.
+    // A rolling step that is no multiple of an element, and not along x.
     let aside = Friction { rolling_direction: 0.7, rolling_distance: 0.11, ..steady };
     vec![
         shift,
@@ -54,20 +55,20 @@ fn motions_and_forces_meet_the_conditions() {
     let (grid, g) = ellipse(0.8, 26);
     for (t, mu, nu) in COATS {
         let coated = coated(&grid, t, mu, nu);
-        // The compliances of the layer, as a spring, and of the substrate.
+        // The order of the displacements per traction: the layer as a spring, and the substrate.
         let scale = t.min(1.0) + mu;
         for friction in motions(scale) {
             let mut solver = Solver::new(grid, coated.clone(), true, &Threads::One);
             let (report, solution) = run(&mut solver, &g, &friction, 1e-7);
             let none = vec![[0.0; 2]; grid.len()];
             let sums = |by: (f64, f64), q: &[Vector], u: &mut [Vector]| dense::apply(&coated, &grid, by, q, u);
-            let left = residual_by(sums, &grid, &g, &friction, &none, (&report, &solution));
-            assert!(left <= 1.01e-7, "{t} {mu} {friction:?}: {left:e}");
+            let slip_residual = residual_by(sums, &grid, &g, &friction, &none, (&report, &solution));
+            assert!(slip_residual <= 1.01e-7, "{t} {mu} {friction:?}: {slip_residual:e}");
         }
     }
 }
 
-/// Derivatives of steady rolling, compared with differences.
+/// The derivatives of forces in steady rolling equal differences of forces.
 #[test]
 fn derivatives_are_those_of_differences() {
     let (grid, g) = ellipse(0.8, 30);
@@ -83,7 +84,8 @@ fn derivatives_are_those_of_differences() {
         let (up, down) = (solved(xi + step, false, 1e-10), solved(xi - step, false, 1e-10));
         for k in 0..2 {
             let difference = (up.force[k] - down.force[k]) / (2.0 * step);
-            // An element that changes sides (sensitivities.rs).
+            // A difference has an error of about 1e-3 of the largest derivative if an element changes between stick and slip (as in
+            // sensitivities.rs).
             assert!(
                 (found[k][0] - difference).abs() <= 3e-3 * found[0][0].abs(),
                 "{t} {mu} {k}: {found:?} {difference}"
@@ -92,7 +94,8 @@ fn derivatives_are_those_of_differences() {
     }
 }
 
-/// Steady rolling of thin layers on rigid bodies. They are springs of 2 t/G1: tractions grow with the slip from the leading edge, up to mu p.
+/// Steady rolling of bodies with thin layers on rigid substrates. Each layer is a spring of compliance t/G1, both together 2 t/G1: tractions grow
+/// with the slip from the leading edge on, up to mu p.
 #[test]
 fn a_thin_layer_on_rigid_bodies_rolls_by_the_linear_theory() {
     let m = 40;
@@ -109,7 +112,7 @@ fn a_thin_layer_on_rigid_bodies_rolls_by_the_linear_theory() {
             let free = ahead - xi * grid.dx / (2.0 * t);
             let expected = free.min(0.4 * g[i]);
             slips += usize::from(expected < free && g[i] > 0.0);
-            // Coefficients between elements are below the round-off of 2 t.
+            // 1e-9 allows for the tolerance of the solve. The influence of one element on another is below the round-off of 2 t.
             assert!((found.traction[i][0] - expected).abs() <= 1e-9, "{i}: {:?} {expected}", found.traction[i]);
             assert!(found.traction[i][1].abs() <= 1e-9);
             ahead = expected;
@@ -129,7 +132,7 @@ fn pushed() -> Friction<'static> {
     Friction { prescribed: [Prescribed::Force(0.4), Prescribed::Creepage(0.002)], spin: 1e-3, ..Friction::new(0.3) }
 }
 
-/// Three steps of one handle: a shift, a step of rolling, steady rolling.
+/// Solves three steps on one handle: a shift, a step of transient rolling, and steady rolling.
 fn steps<'a>(scene: &Scene<'a>, own: Option<TangentialInfluence<'a>>) -> (Vec<f64>, Vec<Solution>) {
     let options = Options { tolerance: 1e-9, ..Options::default() };
     let kept = Friction { previous: Previous::Kept, ..pushed() };
@@ -151,7 +154,7 @@ fn steps<'a>(scene: &Scene<'a>, own: Option<TangentialInfluence<'a>>) -> (Vec<f6
     (handle.state().p.clone(), solved)
 }
 
-/// Scenes have the pressures without friction, and the tractions of tables with the same coefficients.
+/// A coated scene with friction has the pressures of the scene without friction, and the tractions that tables of the same coefficients give.
 #[test]
 fn scenes_give_what_tables_of_the_coefficients_give() {
     let (grid, h) = ball(22, 0.2);
@@ -178,11 +181,11 @@ fn scenes_give_what_tables_of_the_coefficients_give() {
             let largest = expected.traction.iter().map(|q| q[0].hypot(q[1])).fold(0.0, f64::max);
             assert!(largest > 0.0);
             for (a, b) in found.traction.iter().zip(&expected.traction) {
-                // With a residual of 1e-9 the error of tractions is some 3e-7 (docs/friction.md).
+                // A residual of 1e-9 leaves an error of some 3e-7 in the tractions (docs/friction.md). Two solves are compared.
                 assert!((a[0] - b[0]).hypot(a[1] - b[1]) <= 1e-6 * largest, "{a:?} {b:?} of {largest}");
             }
         }
-        // With given pressures.
+        // The tangential problem alone, with given pressures, is solved as well.
         let alone = Scene { friction: Some(pushed()), ..scene.clone() };
         let options = Options { tolerance: 1e-9, ..Options::default() };
         let (stop, again, _) = solve_tangential(&alone, &pressure, &options, None).unwrap();
@@ -192,7 +195,7 @@ fn scenes_give_what_tables_of_the_coefficients_give() {
     }
 }
 
-/// The estimated errors of shifts and of steady rolling cover the differences from forces on 3 to 6 times finer grids.
+/// The estimated errors of the forces of shifts and of steady rolling cover the differences from forces on grids that are 3 and 6 times finer.
 #[test]
 fn errors_of_forces_are_covered() {
     let force_on = |m: usize, (layer, bodies): (CoatingLayer, Bodies), motion: Motion, creepage: f64| {
@@ -213,7 +216,7 @@ fn errors_of_forces_are_covered() {
         (CoatingLayer { thickness: 0.3, shear_modulus: 5.0, poisson_ratio: 0.2 }, stiff(1.0)),
     ] {
         for (motion, part) in [(Motion::Shift, 1.0), (Motion::SteadyRolling, 0.5)] {
-            // A part of the creepage of full slip.
+            // `part` of the creepage at which all elements slip, about .0036 here.
             let creepage = part * 0.3 * 0.012;
             let exact = force_on(120, (layer, bodies), motion, creepage);
             for m in [20, 40] {
@@ -247,7 +250,7 @@ fn thick_layers_and_equal_ones_are_half_spaces() {
     }
 }
 
-/// Unequal bodies are refused, and the message names the member that differs.
+/// Bodies with unequal coatings or substrates are refused. The message names the member that differs.
 #[test]
 fn other_bodies_are_refused_by_name() {
     let (grid, h) = ball(12, 0.2);
@@ -257,7 +260,7 @@ fn other_bodies_are_refused_by_name() {
     for (coating, bodies, words) in [
         (layers(Some(RUBBER), None), STEEL, "coating[1] is none"),
         (layers(None, Some(RUBBER)), STEEL, "coating[0] is none"),
-        // A coating without thickness is none.
+        // A coating of thickness 0 counts as no coating.
         (layers(Some(RUBBER), Some(CoatingLayer { thickness: 0.0, ..RUBBER })), STEEL, "coating[1] is none"),
         (
             layers(Some(RUBBER), Some(stiff(3.0))),
@@ -288,7 +291,7 @@ fn other_bodies_are_refused_by_name() {
             assert!(message.contains("friction and coating are both given") && message.contains(words), "{message}");
         }
     }
-    // A Poisson ratio out of range is also refused with given pressures.
+    // With given pressures a Poisson ratio out of range is refused, too.
     let scene =
         Scene { coating: both(stiff(1e7)), friction: Some(pushed()), ..Scene::new(grid, &h, STEEL, Load::Force(3.0)) };
     let refused = solve_tangential(&scene, &vec![0.1; grid.len()], &Options::default(), None).map(|_| ());

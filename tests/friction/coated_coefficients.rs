@@ -1,4 +1,4 @@
-//! Displacements of coated bodies by tractions: responses to waves, and coefficients.
+//! Displacements of coated bodies by tractions: responses to sinusoidal tractions, and influence coefficients.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use contact_normal::influence::{Across, Along, Coat, Response};
 use super::coefficients::rule;
 use super::dense;
 
-/// Two equal bodies: a layer of thickness t with `1/G1 = 1`, on a body with `G2 = 1/mu`.
+/// The tangential coefficients of two equal bodies: a layer of thickness t with `1/G1 = 1` on a substrate with `G2 = 1/mu`.
 fn coated((dx, dy): (f64, f64), t: f64, mu: f64, nu: [f64; 2]) -> Tangential {
     let [surface, below] =
         [(1.0, nu[0]), (mu, nu[1])].map(|(shear, nu)| Compliance { shear, poisson: shear * nu, unlike: 0.0 });
@@ -20,8 +20,9 @@ fn plain((dx, dy): (f64, f64), shear: f64, nu: f64) -> Tangential {
     Tangential::new(dx, dy, Compliance { shear, poisson: shear * nu, unlike: 0.0 })
 }
 
-/// `(mu, [nu1, nu2], s, L, T)` from the boundary value problems: displacements in the layer and below as sums of the waves that
-/// decay and grow, whose factors meet the conditions at the surface and at the interface; 4 or 6 unknowns, solved in 130 digits (mpmath).
+/// `(mu, [nu1, nu2], s, L, T)`: the responses L to tractions along the wave vector and T to tractions across it. The numbers are solutions of the
+/// boundary value problems: displacements in the layer and below are sums of waves that decay and grow with the depth, and their 4 or 6 factors meet
+/// the conditions at the surface and at the interface. Solved in 130 digits (mpmath).
 const RESPONSES: [(f64, [f64; 2], f64, f64, f64); 11] = [
     (0.0, [0.3, 0.3], 0.01, 0.014284285886859718, 0.00999966667999946),
     (0.0, [0.5, 0.3], 1.0, 0.832105526798992, 0.7615941559557649),
@@ -41,18 +42,18 @@ fn responses_are_those_of_the_boundary_value_problem() {
     for (mu, nu, s, along, across) in RESPONSES {
         let (l, t) = (Along::new(mu, nu), Across::new(mu));
         for (found, expected) in [(l.at(s), along), (t.at(s), across)] {
-            // Some ten operations, of which none cancels.
+            // The formula has some ten operations without cancellation, each with a rounding error of 1e-16.
             assert!((found / expected - 1.0).abs() <= 5e-15, "{mu} {nu:?} {s}: {found:e} {expected:e}");
         }
         for (found, expected) in [(l.less_one(s), along), (t.less_one(s), across)] {
-            // Without the digits that the subtraction of 1 cancels.
+            // `less_one` computes L - 1 without the cancellation that the subtraction has.
             assert!((found - (expected - 1.0)).abs() <= 5e-15 * expected.max(1.0), "{mu} {nu:?} {s}");
         }
     }
 }
 
-/// Long waves have the response of the substrate. On a rigid body the response of a layer is t/G1, compressible or not. Taylor coefficients are those of the
-/// function.
+/// Long waves have the response of the substrate. On a rigid substrate the response of a layer to long waves is that of its thickness, t/G1, whether
+/// it is compressible or not. The Taylor coefficients are those of the function.
 #[test]
 fn responses_have_their_limits() {
     for mu in [0.0, 1e-6, 0.01, 0.3, 1.0, 3.0, 100.0, 1e4] {
@@ -68,7 +69,7 @@ fn responses_have_their_limits() {
                 assert!((series - at).abs() <= 1e-13 * at, "{mu} {nu:?}: {series} {at}");
                 assert!((of.at(50.0) - 1.0).abs() <= 1e-15 && of.less_one(25.0).abs() <= 1e-15);
                 if mu == 0.0 {
-                    // Up to terms of relative order s^2.
+                    // The neglected terms are of relative order s^2.
                     assert!((at / (slope * near) - 1.0).abs() <= 3.0 * near * near, "{nu:?}: {at}");
                 }
             }
@@ -76,8 +77,8 @@ fn responses_have_their_limits() {
     }
 }
 
-/// `(mu, nu, t, (dx, dy), offset, Axx, Ayy, Axy)`, in 1/(pi G1) of both bodies: Hankel integrals of order 0 and 2 at 20 x 20 Gauss points of the element, in
-/// 25 digits (mpmath), and the half-space's closed forms.
+/// `(mu, nu, t, (dx, dy), offset, Axx, Ayy, Axy)`, in 1/(pi G1) of both bodies: Hankel integrals of order 0 and 2 at 20 x 20 Gauss points of the
+/// element, in 25 digits (mpmath), and the half-space's closed forms.
 type Digits = (f64, [f64; 2], f64, (f64, f64), (f64, f64), [f64; 3]);
 
 #[rustfmt::skip]
@@ -103,7 +104,8 @@ fn coefficients_are_those_of_hankel_integrals() {
             let found = coated.at(sign_x * x, sign_y * y).map(|value| PI * value);
             for (k, sign) in [1.0, 1.0, sign_x * sign_y].into_iter().enumerate() {
                 let error = (sign * found[k] - expected[k]).abs();
-                // Printed digits, and the rules beyond the next elements.
+                // The reference is printed to 16 digits. The rest of the tolerance allows for the quadrature rules of the library beyond the
+                // neighbouring elements.
                 assert!(
                     error <= 2e-13 * expected[0].max(1e-2 * PI * largest),
                     "{mu} {t} ({x}, {y}) {k}: {found:?} {expected:?}"
@@ -113,7 +115,8 @@ fn coefficients_are_those_of_hankel_integrals() {
     }
 }
 
-/// The coefficients of 3 x 3 elements add up to that of one element three times as long and wide, by all methods of computation.
+/// The coefficients of 3 x 3 elements add up to that of one element three times as long and wide, by each method that the library has for
+/// coefficients.
 #[test]
 fn coefficients_add_up() {
     let mut worst: f64 = 0.0;
@@ -158,7 +161,8 @@ fn coefficients_add_up() {
     println!("worst: {worst:e}");
 }
 
-/// A layer of the body's own material, one that is much thinner than an element, and one that is thicker than the grid is long.
+/// Three limits: a layer of the substrate's own material, a layer much thinner than an element, and a layer thicker than the grid is long. Each acts
+/// as a half-space.
 #[test]
 fn limits_are_half_spaces() {
     let size = (1.0, 0.7);
@@ -179,21 +183,22 @@ fn limits_are_half_spaces() {
     }
 }
 
-/// A thin layer on a rigid body is a spring: each element by its own traction, t/G1 of each body.
+/// A thin layer on a rigid substrate is a spring: the traction of an element displaces this element alone, by t/G1 of each body.
 #[test]
 fn thin_layers_on_rigid_bodies_are_springs() {
     for nu in [0.0, 0.3, 0.5] {
         let t = 1e-3;
         let coated = coated((1.0, 1.0), t, 0.0, [nu, 0.3]);
         let [xx, yy, _] = coated.at(0.0, 0.0);
-        // Near the edges of the element, within some t, tractions from outside are missing. This has no effect at the centre.
+        // Within some t of its edges the element has smaller displacements, because there are no tractions outside. This has no effect at the centre.
         assert!((xx - 2.0 * t).abs() <= 1e-13 && (yy - 2.0 * t).abs() <= 1e-13, "{nu}: {xx} {yy}");
         let far = coated.at(1.0, 0.0);
         assert!(far.iter().all(|value| value.abs() <= 1e-13), "{nu}: {far:?}");
     }
 }
 
-/// Products are those of the Fourier plane, which the test integrates by itself: a load of Gaussian shape, of which elements leave no alias.
+/// Displacements equal a Fourier integral that the test computes itself. The load has the shape of a Gaussian so wide that the sampling by elements
+/// causes no aliases.
 #[test]
 fn products_are_those_of_the_fourier_plane() {
     let (width, mu, nu, t) = (1.6, 0.2, [0.35, 0.2], 4.0);
@@ -210,7 +215,7 @@ fn products_are_those_of_the_fourier_plane() {
     let by = (0.4, -0.25);
     let mut u = vec![[0.0; 2]; grid.len()];
     dense::apply(&coated, &grid, by, &q, &mut u);
-    // Less the half-space of the layer's material: the rest fades as exp(-2 k t), and so do aliases.
+    // The half-space of the layer's material is subtracted: the rest of the response decays as exp(-2 k t), and so do the aliases.
     let mut half_space = vec![[0.0; 2]; grid.len()];
     dense::apply(&plain((grid.dx, grid.dy), 1.0, nu[0]), &grid, by, &q, &mut half_space);
     let response = |k: f64| {
@@ -247,7 +252,7 @@ fn products_are_those_of_the_fourier_plane() {
                 }
             }
         }
-        // Loads beyond the grid and aliases are 1e-16 of it.
+        // Loads beyond the grid and aliases are 1e-16 of the largest displacement. 1e-12 leaves room for the round-off of the sums.
         for k in 0..2 {
             let found = u[i][k] - half_space[i][k];
             assert!((found - sum[k]).abs() <= 1e-12 * u[20 * 41 + 14][0], "({ix}, {iy}) {k}: {found} {sum:?}");

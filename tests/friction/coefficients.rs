@@ -39,7 +39,7 @@ pub fn rule() -> Vec<(f64, f64)> {
     (0..n).map(node).collect()
 }
 
-/// The ends of intervals that halve towards 0 if they contain it, so that a power is smooth on each.
+/// The ends of intervals whose lengths halve towards 0 if the range contains 0. On each interval a power of the distance from 0 is smooth.
 pub fn panels(from: f64, to: f64) -> Vec<(f64, f64)> {
     if from < 0.0 && to > 0.0 {
         let mut all = panels(0.0, to);
@@ -61,19 +61,20 @@ pub fn panels(from: f64, to: f64) -> Vec<(f64, f64)> {
     all
 }
 
-/// The integrals a, b, c over the element: in y by the rule, on panels graded towards the singular point, and in x in closed form: `[x/r]`,
-/// `[asinh(x/|y|) - x/r]`, `[-y/r]`.
+/// The integrals a, b and c of the tangential coefficients over the element: in y by the Gauss rule, on panels graded towards the singular point, and
+/// in x in closed form, by the differences between both ends of `[x/r]`, `[asinh(x/|y|) - x/r]` and `[-y/r]`.
 fn integrals(kx: f64, ky: f64, dx: f64, dy: f64) -> [f64; 3] {
     let (xp, xm) = ((kx + 0.5) * dx, (kx - 0.5) * dx);
     let mut sums = [0.0; 3];
     let panels = panels((ky - 0.5) * dy, (ky + 0.5) * dy);
-    // Far away the rounding of the ends exceeds that of the width.
+    // Far from the element the round-off of the ends of panels exceeds that of the width, so that the sum of the weights is corrected to dy.
     let width: f64 = dy / panels.iter().map(|(from, to)| to - from).sum::<f64>();
     for (from, to) in panels {
         for (node, weight) in rule() {
             let (y, weight) = (0.5 * (from + to) + 0.5 * (to - from) * node, 0.5 * (to - from) * weight);
             let (rp, rm) = (xp.hypot(y), xm.hypot(y));
-            // The difference of sines by the angle between them, that of asinh by its sinh.
+            // Both differences are computed without cancellation: that of the sines by the angle between them, and that of the asinh by the sinh of
+            // the difference.
             let angle = (y.abs() * dx).atan2(xp * xm + y * y);
             let (middle, half) = (0.5 * ((xp / y.abs()).atan() + (xm / y.abs()).atan()), 0.5 * angle);
             let sine = 2.0 * middle.cos() * half.sin();
@@ -109,7 +110,7 @@ fn tangential_coefficients_are_those_of_quadrature() {
                     for (component, sign) in [(0, 1.0), (1, 1.0), (2, sign_x * sign_y)] {
                         let error = (sign * found[component] - expected[component]).abs() / expected[0];
                         worst = worst.max(error);
-                        // The closed form in x of the quadrature itself loses some digits of 1e-16 each.
+                        // The closed form in x that the quadrature itself uses loses digits: some thousand units of round-off (1e-16).
                         assert!(error <= 1e-12, "{aspect} ({kx}, {ky}) {component}: {found:?} {expected:?}");
                     }
                 }
@@ -121,27 +122,29 @@ fn tangential_coefficients_are_those_of_quadrature() {
 
 #[test]
 fn a_tangential_line_of_elements_is_as_stiff_as_flamant_says() {
-    // Along a strip in y of infinite length: anti-plane shear and plane strain. d/dx of the displacement of a uniform strip of width dx is
-    // -(2/(pi G)) (log) for qy and -(2 (1 - nu)/(pi G)) for qx: sums over ky of differences in kx converge.
+    // A strip of infinite length in y: anti-plane shear for qy, plane strain for qx (Flamant). The displacement at x by a uniform strip of width dx
+    // is a constant minus (2/(pi G)) log(x) for qy and minus (2 (1 - nu)/(pi G)) log(x) for qx, with log(x) the integral of ln|x - s| over the strip.
+    // The sums over ky converge for differences between two kx only.
     let (nu, m) = (0.3, 4000);
     let tangential = Tangential::new(1.0, 1.0, Compliance { shear: 1.0, poisson: nu, unlike: 0.0 });
     let column = |kx: f64, component: usize| -> f64 {
         (1..=m).rev().map(|ky| 2.0 * tangential.at(kx, ky as f64)[component]).sum::<f64>()
             + tangential.at(kx, 0.0)[component]
     };
-    // integral over the strip of ln|x - s|
+    // The integral of ln|x - s| over the strip, s from -1/2 to 1/2.
     let log = |x: f64| (x + 0.5) * (x + 0.5).abs().ln() - (x - 0.5) * (x - 0.5).abs().ln() - 1.0;
     for (component, factor) in [(0, 1.0 - nu), (1, 1.0)] {
         let found = column(1.0, component) - column(6.0, component);
         let exact = -2.0 * factor / PI * (log(1.0) - log(6.0));
-        // The part beyond m elements: the difference of 1/r, some (36/m^2)/pi.
+        // The sum leaves out |ky| > m: the integral of the difference of 1/r there is some (36/m^2)/pi.
         assert!((found - exact).abs() <= 36.0 / f64::from(m).powi(2), "{component}: {found} {exact}");
     }
 }
 
 #[test]
 fn products_are_direct_sums() {
-    // Tractions in both directions, or in one. Displacements across it are exactly 0 for a Poisson ratio of 0.
+    // Pairs of Poisson's ratio and factors of the tractions in x and y. With a Poisson's ratio of 0 the displacements across a traction are exactly
+    // 0.
     let cases = [(0.6, [1.0, 1.0]), (0.6, [0.0, 1.0]), (0.0, [1.0, 1.0]), (0.0, [1.0, 0.0]), (0.0, [0.0, 1.0])];
     for ((mx, my), (poisson, directions)) in
         [(9, 7), (1, 6), (8, 1), (1, 1), (16, 16), (5, 33)].into_iter().flat_map(|size| cases.map(|case| (size, case)))
@@ -183,7 +186,8 @@ fn products_are_direct_sums() {
 
 #[test]
 fn the_inverse_of_the_circulant_is_near_that_of_a_product() {
-    // For a smooth traction far from the rim M A q is q, up to effects of the rim and of the other period.
+    // M is the inverse of the circulant of the coefficients. For a smooth traction that ends far from the rim of the grid, M A q is q, but for
+    // effects of the rim and of the periodicity.
     let grid = Grid::new(48, 40, 1.0, 1.2).unwrap();
     let tangential = Tangential::new(1.0, 1.2, Compliance { shear: 1.0, poisson: 0.3, unlike: 0.0 });
     let q: Vec<Vector> = (0..grid.len())
@@ -200,6 +204,6 @@ fn the_inverse_of_the_circulant_is_near_that_of_a_product() {
     inverse.apply(&u, 1.0, &mut back, &mut inverse.workspace().unwrap());
     let norm = |v: &[Vector]| v.iter().map(|v| v[0] * v[0] + v[1] * v[1]).sum::<f64>().sqrt();
     let difference: Vec<Vector> = q.iter().zip(&back).map(|(q, b)| [q[0] - b[0], q[1] - b[1]]).collect();
-    // A preconditioner need only be approximate.
+    // M is a preconditioner, which need only be an approximate inverse: 20 % is ample.
     assert!(norm(&difference) < 0.2 * norm(&q), "{}", norm(&difference) / norm(&q));
 }

@@ -1,4 +1,5 @@
-//! Friction with the other effects: none is ignored, and unsupported pairs are refused by name. Handles and precisions.
+//! Friction together with each other effect of a scene: none is ignored, and unsupported pairs are refused with a message that names the effect. Also
+//! the reuse of handles, and the precisions.
 
 use contact_normal::error::Error;
 use contact_normal::influence::{RowTables, Table};
@@ -29,7 +30,7 @@ fn each_effect_changes_the_tractions_or_is_refused() {
     let patch = vec![0; grid.len()];
     let table = vec![1e-6; 4 * grid.len()];
     let row_tables = vec![1e-6; 2 * 32 * 32 * 32];
-    // Part of the contact area of the ball, and elements beside it.
+    // A fixed contact area: a part of the ball's contact area, and elements beside it, whose pressures become negative.
     let fixed: Vec<bool> =
         (0..grid.len()).map(|i| (12..31).contains(&(i % 32)) && (8..24).contains(&(i / 32))).collect();
     for name in [
@@ -64,22 +65,23 @@ fn each_effect_changes_the_tractions_or_is_refused() {
         let guess = (options.active_set == ActiveSet::Fixed).then_some(Guess { pressure: &nothing, contact: &fixed });
         let (stop, report) = solver.solve(&scene, &options, guess, None).unwrap();
         assert_eq!(stop, Outcome::Converged, "{name}");
-        // In units with 1/G = 1: scaling by a power of two is exact.
+        // `residual` has 1/G = 1, so that tractions and pressures are scaled. The factor is a power of two, which is exact.
         let mut solution = solver.friction().unwrap().clone();
         solution.traction.iter_mut().flatten().for_each(|q| *q *= compliance);
         let pressures: Vec<f64> = solver.state().p.iter().map(|p| p.max(0.0) * compliance).collect();
         let conditions = (&report.friction.unwrap(), &solution);
-        let left = residual((&grid, 0.28), &pressures, &pushed(), &vec![[0.0; 2]; grid.len()], conditions);
-        assert!(left <= 1.001e-6, "{name}: {left}");
+        let slip_residual = residual((&grid, 0.28), &pressures, &pushed(), &vec![[0.0; 2]; grid.len()], conditions);
+        assert!(slip_residual <= 1.001e-6, "{name}: {slip_residual}");
         let found = &solver.friction().unwrap().traction;
         let change = found.iter().zip(&alone).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
-        // The pressures are some 1000.
+        // Tractions are up to mu times pressures of some 1000, so that a change of 1 is not the solver's tolerance.
         assert!(change > 1.0, "{name}: {change}");
         assert!(name != "fixed contact area" || solver.state().p.iter().any(|p| *p < 0.0), "no element pulls");
     }
 }
 
-/// A coating without thickness, or of its body's own material, is none, so that it is allowed with friction, tables, a period, and on a handle.
+/// A coating of thickness 0, or of the same material as its body, counts as no coating: it is allowed with friction, tables, a period, and on a
+/// handle.
 #[test]
 fn a_coating_that_is_none_is_beside_everything() {
     let (grid, h) = ball(24, 0.08);
@@ -118,7 +120,7 @@ fn a_coating_that_is_none_is_beside_everything() {
             handle.solve(&coated, &options, None, None).unwrap();
             assert!(bits(&handle) == expected, "{layers:?}");
         }
-        // Invalid coatings are still refused, and so is a real one.
+        // Invalid coatings are still refused, and so is a coating that has an effect.
         for (layers, word) in [
             ([layer(-1.0, 82000.0, 0.28), None], "thickness"),
             ([layer(0.0, -1.0, 0.28), None], "shear_modulus"),
@@ -158,7 +160,7 @@ fn one_coefficient_is_as_many_alike() {
         solve(&scene, &Options::default()).unwrap().0.friction().unwrap().traction.clone()
     };
     assert_eq!(found(Coefficient::Uniform(0.3)), found(Coefficient::PerElement(&each)));
-    // Without friction on one half there are no tractions, and all elements slip.
+    // Where the coefficient is 0, on one half of the grid, there are no tractions, and all elements slip.
     let half: Vec<f64> = (0..grid.len()).map(|i| if i % 32 < 16 { 0.0 } else { 0.3 }).collect();
     let tractions = found(Coefficient::PerElement(&half));
     assert!((0..grid.len()).all(|i| i % 32 >= 16 || tractions[i] == [0.0; 2]));
@@ -193,12 +195,12 @@ fn the_precisions_agree() {
     };
     let (double, mixed) = (found(Precision::Double), found(Precision::Mixed));
     let apart = double.iter().zip(&mixed).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
-    // In short waves a residual of 1e-9 is an error of some 1e-6 of the tractions, of which the largest are 300.
+    // A residual of 1e-9 in the displacements is an error of some 1e-6 in short-wave tractions, of which the largest are 300.
     assert!(apart <= 1e-3, "{apart}");
 }
 
-/// If the normal problem is stopped early, its pressures may carry less than the tangential force. This must not be refused, because the solved
-/// problem carries the force.
+/// If the normal problem is stopped early, its pressures may carry less than the given tangential force, although those of the solved problem carry
+/// it. The library must not refuse the force then.
 #[test]
 fn a_stop_of_the_normal_problem_is_not_a_force_that_is_too_large() {
     let (grid, h) = ball(32, 0.06);

@@ -1,4 +1,4 @@
-//! The estimated errors of tangential forces compared with the true ones, for Cattaneo's ball and for one that rolls.
+//! The estimated errors of tangential forces and creepages, compared with the true errors, for balls that are shifted or roll and for flat punches.
 
 use contact_normal::friction::Report;
 use contact_normal::grid::Grid;
@@ -8,12 +8,13 @@ use contact_normal::solver::{solve, Options, Outcome};
 const MU: f64 = 0.3;
 const RADIUS: f64 = 100.0;
 
-/// A ball with a contact radius of 1 on m x m elements, with its centre off the middle of an element, pressed and moved. Also returns its mu N.
+/// Presses and moves a ball with a contact radius of 1 on m x m elements. The centre of the ball is off the centre of an element. Returns the report
+/// of friction, and mu N.
 fn moved(m: usize, nu: f64, friction: impl Fn(f64, [f64; 2]) -> Friction<'static>) -> (Report, f64) {
     moved_between(m, Bodies::same(1.0, nu), friction)
 }
 
-/// [`moved`] for any bodies.
+/// As [`moved`], for any two bodies.
 fn moved_between(m: usize, bodies: Bodies, friction: impl Fn(f64, [f64; 2]) -> Friction<'static>) -> (Report, f64) {
     let d = 2.37 / m as f64;
     let grid = Grid::new(m, m, d, d).unwrap();
@@ -32,7 +33,7 @@ fn moved_between(m: usize, bodies: Bodies, friction: impl Fn(f64, [f64; 2]) -> F
     (report.friction.unwrap(), MU * force)
 }
 
-/// The median of the ratios of estimated and true errors.
+/// The median of the ratios of estimated to true errors.
 fn median(mut ratios: Vec<f64>) -> f64 {
     ratios.sort_by(f64::total_cmp);
     ratios[ratios.len() / 2]
@@ -45,7 +46,8 @@ fn the_error_of_cattaneos_force_or_shift_is_covered() {
     let mut ratios = Vec::new();
     for m in SIZES {
         for part in [0.1_f64, 0.5, 0.9] {
-            // delta = (3 mu N/(8 a)) (2 - nu)/(2 G) 2 (1 - (1 - F/(mu N))^(2/3)), both bodies, nu = 0, G = 1, a = 1.
+            // Cattaneo and Mindlin: shift = (3 mu N/(8 a)) (2 - nu)/(2 G) 2 (1 - (1 - F/(mu N))^(2/3)); the factor 2 is for both bodies. Here nu = 0,
+            // G = 1, a = 1.
             let shift = |carried: f64| 0.75 * carried * (1.0 - (1.0 - part).powf(2.0 / 3.0));
             let (found, carried) = moved(m, 0.0, |carried, _| Friction {
                 prescribed: [Prescribed::Creepage(-shift(carried)), Prescribed::Creepage(0.0)],
@@ -90,7 +92,7 @@ fn the_error_of_a_shift_of_unlike_bodies_is_covered() {
                     ..Friction::new(MU)
                 })
             };
-            // The error of this reference is a twentieth of the errors below.
+            // The reference has 4 to 8 times finer elements. Its error is a twentieth of the errors below.
             let (force, creepage) = (by_shift(160).0.force, by_force(160).0.creepage);
             for m in [20, 24, 32, 40] {
                 let (shifted, pushed) = (by_shift(m).0, by_force(m).0);
@@ -131,10 +133,10 @@ fn the_error_of_a_rolling_balls_force_or_creepage_is_covered() {
             })
         };
         let by_creepages = [Prescribed::Creepage(xi), Prescribed::Creepage(eta)];
-        // Errors are of first order. Extrapolated from two grids the reference has some hundredth of the errors below.
+        // Errors are of first order in the element. The reference is extrapolated from two grids, and has some hundredth of the errors below.
         let [coarse, fine] = [128, 256].map(|m| rolls(m, by_creepages).0.force);
         let exact = [0, 1].map(|k| 2.0 * fine[k] - coarse[k]);
-        // The estimate needs a coarser grid: 24 elements across the contact.
+        // The estimate needs a coarser grid: at least 24 elements across the contact.
         for m in [32, 40, 48, 64, 80] {
             let (found, carried) = rolls(m, by_creepages);
             for (k, exact) in exact.into_iter().enumerate() {
@@ -166,10 +168,10 @@ fn errors_of_steps_that_continue_are_not_known() {
     assert_eq!(found.error, [None; 2]);
 }
 
-/// Sides of a grid, and offsets of the surface from its middle, so that edges and jumps of mu have various places within an element.
+/// Sides of the grid, and offsets of the surface from the middle of the grid. They give edges and jumps of mu various places within an element.
 const PLACES: [(f64, [f64; 2]); 3] = [(1.7, [0.0, 0.0]), (1.93, [0.011, -0.007]), (1.61, [-0.013, 0.003])];
 
-/// The grid, a surface at its centres, and mu.
+/// The grid, the surface `h` at the centres of its elements, and mu there.
 fn placed(
     m: usize,
     (side, off): (f64, [f64; 2]),
@@ -191,8 +193,9 @@ fn assert_covered(mut ratios: Vec<f64>, most: f64, what: &str) {
     assert!(ratios[0] >= 0.5 && 10 * low <= ratios.len() && median <= most, "{what}: {low} low, median {median}");
 }
 
-/// A flat punch sticks until all of it slips: tractions are proportional to pressures, and with nu = 0 both have equal displacements. So `F = k E*
-/// shift` with the k of the normal force: 2 a for a circle of radius a, `pi 0.36679 L` for a square of side L (Read 1997).
+/// A flat punch sticks until all of it slips. Until then tractions are proportional to the pressures, and with nu = 0 both cause the same
+/// displacements. So `F = k E* shift` with the k of the normal force: 2 a for a circle of radius a, `pi 0.36679 L` for a square of side L (Read
+/// 1997).
 #[test]
 fn the_error_of_a_flat_punchs_force_or_shift_is_covered() {
     let square = |x: f64, y: f64| if x.abs().max(y.abs()) < 0.6 { 0.0 } else { f64::INFINITY };
@@ -231,7 +234,7 @@ fn the_error_of_a_flat_punchs_force_or_shift_is_covered() {
     }
 }
 
-/// With a coefficient that falls the errors of a shift by creepages are known, but not those by force and those of rolling.
+/// With a falling friction law the errors of forces are estimated for a shift by given creepages only, not for given forces and not for rolling.
 #[test]
 fn with_a_law_only_shifts_by_creepages_have_errors() {
     let saturating = MU * 2.0 / ((1.0 - 0.28) * RADIUS);
@@ -280,7 +283,7 @@ fn the_error_of_a_force_where_mu_jumps_is_covered() {
     assert_covered(ratios, 5.0, "mu jumps");
 }
 
-/// With a given approach the normal force has an error, and so has `mu N` of a slipping ball: compared with Hertz.
+/// With a given approach the normal force has an error, and so has the `mu N` of a slipping ball. The exact force is that of Hertz.
 #[test]
 fn the_error_of_a_slipping_balls_force_by_approach_is_covered() {
     let (a, mut ratios) = (0.6_f64, Vec::new());
@@ -297,8 +300,9 @@ fn the_error_of_a_slipping_balls_force_by_approach_is_covered() {
     assert_covered(ratios, 5.0, "slipping ball");
 }
 
-/// A shift with spin has a place that does not move, around which tractions turn: compared with a grid of five times the elements. Without this part errors
-/// were up to 15 times the estimate. Elements without friction beside slipping ones leave the estimate.
+/// In a shift with spin one place does not move, and tractions turn around it. The reference is a grid of five times the elements. Without the part
+/// of the estimate for this place, errors were up to 15 times the estimate. Elements without friction beside slipping ones do not change the
+/// estimate.
 #[test]
 fn the_error_of_a_shift_with_spin_is_covered() {
     let mut ratios = Vec::new();

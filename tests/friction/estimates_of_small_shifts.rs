@@ -1,4 +1,4 @@
-//! Estimated errors of forces by small shifts. They are linear in the shift, and a jump of the surface is their only cause.
+//! Estimated errors of the forces of small shifts. The errors are linear in the shift, and the edge of a punch is their only cause.
 
 use contact_normal::friction::Report;
 use contact_normal::grid::Grid;
@@ -21,13 +21,13 @@ fn punch(m: usize, shift: f64) -> Report {
     report.friction.expect("friction")
 }
 
-/// The estimate must be linear in the shift, also the part by the normal force.
+/// The estimate must be linear in the shift, including its part that comes from the error of the normal force.
 #[test]
 fn errors_of_a_punch_are_covered_however_small_the_shift() {
     for shift in [1e-2, 1e-4, 1e-6, 1e-8, 1e-12] {
         let (found, finer) = (punch(20, shift), punch(120, shift));
         let (error, off) = (found.error[0].expect("an estimate"), (found.force[0] - finer.force[0]).abs());
-        // Often much more than the error (docs/friction.md).
+        // The estimate is often much larger than the error (docs/friction.md), but never larger than the force.
         assert!(error >= off && error <= found.force[0], "{shift:e}: {error:e} for {off:e} of {:e}", found.force[0]);
     }
 }

@@ -1,4 +1,5 @@
-//! Given forces in nearly full slip, on few elements, or with large slips: the force grows with the creepage, so that a solution exists.
+//! Given tangential forces in nearly full slip, on few elements, or with large slips. The force grows with the creepage, so that each force below mu
+//! N has a solution, which must be found.
 
 use std::f64::consts::PI;
 
@@ -10,12 +11,13 @@ use super::support::{residual, run, solver};
 
 const TOLERANCE: f64 = 1e-6;
 
-/// Solves for given pressures of like bodies, and checks the conditions by direct sums, and the given forces.
+/// Solves the tangential problem of like bodies with given pressures. Checks the conditions by direct sums, and the given forces. Returns the
+/// creepages.
 fn meets(grid: &Grid, g: &[f64], friction: &Friction<'_>, before: &[[f64; 2]], what: &str) -> [f64; 2] {
     let (report, solution) = run(&mut solver(grid, 0.3), g, friction, TOLERANCE);
-    let left = residual((grid, 0.3), g, friction, before, (&report, &solution));
-    // The sums of the test have round-off as well.
-    assert!(left <= 1.01 * TOLERANCE, "{what}: {left:e}");
+    let slip_residual = residual((grid, 0.3), g, friction, before, (&report, &solution));
+    // 1 % of the tolerance allows for the round-off of the test's direct sums.
+    assert!(slip_residual <= 1.01 * TOLERANCE, "{what}: {slip_residual:e}");
     let mu = friction.coefficient.at(0);
     let carried = mu * g.iter().sum::<f64>() * grid.element_area();
     for k in 0..2 {
@@ -48,13 +50,14 @@ fn rollers_with_little_friction_roll_freely() {
         let found = report.friction.unwrap();
         assert!(found.force[0].abs() <= TOLERANCE * mu * force, "mu {mu}: {:?}", found.force);
         if mu <= 5e-4 {
-            // The creepage is the rigid slip of the only sticking element; that of its neighbours differs by half a hundredth.
+            // The creepage is that at which the only sticking element has no rigid slip. For its neighbours it would differ by half a per cent, hence
+            // the tolerance.
             assert!((found.creepage[0] / 5.260e-4 - 1.0).abs() <= 5e-3, "mu {mu}: {:?}", found.creepage);
         }
     }
 }
 
-/// A line contact whose own rigid slip is nearly uniform, so that one creepage balances nearly all elements at once.
+/// A line contact with a caller's rigid slip that is nearly uniform, so that one creepage balances nearly all elements at once.
 #[test]
 fn a_slip_of_the_callers_own_is_balanced() {
     for n in [5, 40, 200] {
@@ -71,13 +74,13 @@ fn a_slip_of_the_callers_own_is_balanced() {
                 ..Friction::new(mu)
             };
             let [creepage, _] = meets(&grid, &pressure, &friction, &[], &format!("{n} elements, mu {mu}"));
-            // The mean of the slip lies between its least and its largest.
+            // The creepage times the element is a mean of the slips, which are up to 5.75e-7 on elements of 1e-3.
             assert!(creepage > 0.0 && creepage < 5.75e-4, "{n} elements, mu {mu}: {creepage:e}");
         }
     }
 }
 
-/// A force of up to .999 mu N on 1 to 25 elements, square and slender ones.
+/// Forces of up to .999 mu N on grids of 1 to 25 elements, square and slender.
 #[test]
 fn few_elements_reach_any_force_below_mu_n() {
     for (mx, my, dy) in [(1, 1, 1.0), (1, 1, 0.1), (1, 2, 2.0), (2, 1, 0.5), (1, 5, 20.0), (5, 5, 1.0)] {
@@ -100,7 +103,7 @@ fn few_elements_reach_any_force_below_mu_n() {
     }
 }
 
-/// Large other motions: a given creepage across the force, and previous tractions.
+/// A force is given in one direction beside a large motion: a given creepage across it, or large previous tractions.
 #[test]
 fn a_force_beside_large_slips_and_tractions_is_met() {
     let m = 15;
@@ -129,7 +132,7 @@ fn a_force_beside_large_slips_and_tractions_is_met() {
     }
 }
 
-/// Without a motion and with a force of 0: no creepage, no tractions, and no residual.
+/// Without a motion and with a force of 0 the creepages, the tractions and the residual are 0.
 #[test]
 fn what_does_not_move_carries_no_force() {
     let grid = Grid::new(1, 9, 1.0, 0.41).unwrap();
@@ -152,7 +155,7 @@ fn what_does_not_move_carries_no_force() {
     }
 }
 
-/// A shift of a line contact with spin takes few products: clipped steps of gradients must not stay short.
+/// A shift of a line contact with spin takes few products. Gradient steps that are clipped at the bounds must become long again.
 #[test]
 fn a_shift_of_a_line_contact_takes_few_products() {
     for m in [30, 92, 200] {
@@ -167,8 +170,8 @@ fn a_shift_of_a_line_contact_takes_few_products() {
     }
 }
 
-/// Two creepages of full slip, one with too much force and one with too little. The natural map leads from each to the other, and halves the
-/// residual. Between them is the solution, in which one element sticks.
+/// At one of two creepages of full slip the force is too large, at the other one too small. A fixed-point iteration leads from each of them to the
+/// other, and halves the residual. The solution is between them: one element sticks.
 #[test]
 fn creepages_that_lead_to_each_other_are_left() {
     let grid = Grid::new(17, 1, 2.2 / 17.0, 26.83).unwrap();
@@ -191,8 +194,8 @@ fn creepages_that_lead_to_each_other_are_left() {
     }
 }
 
-/// An rms over 1735 elements can be small although one of them has a large residual. A trial with such a residual must not decide whether forces are
-/// too small or too large.
+/// The rms residual over 1735 elements can be small although one of them has a large residual. The search for the creepage must not decide by such a
+/// trial whether the force is too small or too large.
 #[test]
 fn forces_are_met_where_the_residual_hides_one_element() {
     let grid = Grid::new(2000, 1, 1.1e-3, 268.0051990031252).unwrap();

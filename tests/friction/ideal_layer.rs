@@ -1,5 +1,5 @@
-//! An ideal plastic layer, with hardening 0, has the limits of its particles. It is compared with a layer that hardens by nearly 0, which another
-//! method solves.
+//! An ideally plastic layer (hardening 0) keeps a yield limit for each particle. Its tractions are compared with those of a layer with a hardening
+//! near 0, for which the library uses another method.
 
 use contact_normal::friction::{Request, Solution};
 use contact_normal::grid::Grid;
@@ -12,14 +12,14 @@ use super::support::run;
 const TOLERANCE: f64 = 1e-9;
 const FORCE: f64 = 1e4;
 
-/// A ball on 24 x 24 elements, and its pressures.
+/// The pressures of a ball on 24 x 24 elements.
 fn ball() -> (Grid, Vec<f64>) {
     let grid = grid(24, 24, 0.2, 0.2);
     let h = distance(&grid, |x, y| (x * x + y * y) / 600.0);
     (grid, pressures(grid, &h, FORCE))
 }
 
-/// The tractions with either layer. If `hardened`, a first step has a layer that hardens.
+/// Solves with an ideally plastic layer and with one that hardens by 1e-6. If `hardened`, a first step hardens the layer, so that its limits vary.
 fn both(pressure: &[f64], grid: &Grid, friction: &Friction<'_>, hardened: bool) -> [Solution; 2] {
     [0.0, 1e-6].map(|hardening| {
         let mut solver = solver(grid);
@@ -35,7 +35,8 @@ fn both(pressure: &[f64], grid: &Grid, friction: &Friction<'_>, hardened: bool) 
 fn assert_same([ideal, hardly]: [Solution; 2], what: &str) {
     let largest = hardly.traction.iter().flatten().fold(0.0f64, |most, q| most.max(q.abs()));
     for (i, (a, b)) in ideal.traction.iter().zip(&hardly.traction).enumerate() {
-        // The tolerance of 1e-9 of the rms slip, in one of 576 elements; and at most 1e-6 mm of slip times 1e-6 MPa/mm.
+        // Two causes of a difference: a residual of 1e-9 of the rms slip, which may be concentrated in one of 576 elements; and the hardening of 1e-6
+        // MPa/mm times slips of up to 1e-6 mm.
         assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-6 * largest, "{what}, element {i}: {a:?} {b:?}");
         let limit = ideal.particles[i].yield_limit;
         assert!(a[0].hypot(a[1]) <= limit * (1.0 + 1e-12), "{what}, element {i}: {a:?} of {limit}");
@@ -63,7 +64,8 @@ fn limits_move_with_the_particles_in_rolling() {
         let friction = Friction { motion, prescribed, yield_limits: Some(&limits), ..Friction::new(0.3) };
         let found = both(&pressure, &grid, &friction, false);
         let low = found[0].particles.iter().filter(|particle| particle.yield_limit < 39.0).count();
-        // The step is one element: the column has moved by one. In steady rolling all particles enter with fresh limits.
+        // In transient rolling by one element the column of low limits moves by one element. In steady rolling all particles enter the contact with
+        // fresh limits.
         assert_eq!(low, if motion == Motion::SteadyRolling { 0 } else { 24 }, "{motion:?}");
         assert_same(found, &format!("{motion:?}"));
     }
@@ -78,12 +80,13 @@ fn a_force_beyond_the_limits_of_the_particles_is_refused() {
     let friction = Friction { prescribed, layer, ..Friction::new(0.3) };
     let refused = solver(&grid).solve(&Request::new(&pressure, &friction, TOLERANCE), &mut |_, _| true);
     assert!(refused.is_err());
-    // Particles that have hardened carry it.
+    // If the caller gives the higher limits of hardened particles, the same force is carried.
     let limits = vec![80.0; grid.len()];
     run(&mut solver(&grid), &pressure, &Friction { yield_limits: Some(&limits), ..friction }, TOLERANCE);
 }
 
-/// A step with a law and without a layer keeps no limits. The layer of the next step is fresh, as with the same tractions given by the caller.
+/// A step with a friction law but without a plastic layer keeps no yield limits. The layer of the next step is fresh, as if the caller gave the same
+/// tractions.
 #[test]
 fn a_layer_that_begins_after_a_law_is_fresh() {
     let (grid, pressure) = ball();

@@ -1,4 +1,4 @@
-//! The slope of a law with its memory, and results with steep laws.
+//! The reported slope of a friction law with memory, and results with steep laws.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Branch, Fall, Friction, FrictionLaw};
@@ -9,8 +9,8 @@ use super::laws_steep::Draw;
 use super::laws_that_rise::{along, Scene, POISSON, TOLERANCE};
 use super::support::tangential;
 
-/// `law_slope` is the largest slope of the bound, with the memory of the particle's coefficient, times the element's influence. It is compared with
-/// differences.
+/// `law_slope` is the largest slope of an element's bound by its slip, including the memory of the particle's coefficient, times the influence of the
+/// element on itself. It is compared with differences over a sequence of slips.
 #[test]
 fn the_slope_of_a_law_counts_its_memory() {
     let grid = Grid::new(1, 1, 1.0, 1.0).unwrap();
@@ -36,12 +36,12 @@ fn the_slope_of_a_law_counts_its_memory() {
         let fall_of = |slip: f64| (bound(slip) - bound(slip + 1e-8)) / 1e-8;
         let exact = own * places.map(fall_of).fold(0.0, f64::max);
         let slope = scene.solve(TOLERANCE).1.law_slope;
-        // A fine geometric sequence of slips misses less than a hundredth of the largest slope; differences have an error of 1e-8.
+        // The sequence of slips is fine enough to miss less than 1 % of the largest slope. The differences have an error of 1e-8.
         assert!((slope - exact).abs() <= 1e-2 * exact + 1e-6, "{k} {law:?} {had}: {slope} {exact}");
     }
 }
 
-/// An element with three solutions has a slope above one.
+/// If a single element has three solutions, its slope is above 1.
 #[test]
 fn an_element_with_three_solutions_has_a_slope_above_one() {
     let law = FrictionLaw {
@@ -64,7 +64,7 @@ fn an_element_with_three_solutions_has_a_slope_above_one() {
     assert!(slips[3] > 2.0 * slips[1], "{slips:?}");
 }
 
-/// If Newton's method ends without a solution, turns of Coulomb's problem find that of the branch LOW.
+/// If Newton's method ends without a solution, repeated solves of Coulomb's problem with updated coefficients find the solution of the branch LOW.
 #[test]
 fn a_steep_law_that_turns_solve_is_solved_without_a_branch() {
     let wheel = Wheel::new(1);

@@ -1,5 +1,5 @@
-//! Laws of friction that fall, beside the output of CONTACT (its examples tractcurv, series 2, and veldep_fric; eve70a/CONTACT). Their conditions
-//! hold by direct sums.
+//! Falling friction laws compared with the output of CONTACT (its examples tractcurv, series 2, and veldep_fric; eve70a/CONTACT). The conditions of
+//! all laws are recomputed by direct sums.
 
 use contact_normal::friction::{Compliance, Report, Request, Solution, Solver, Tangential, SLIP, STICK};
 use contact_normal::grid::Grid;
@@ -12,7 +12,7 @@ use super::dense;
 
 const STEEL: (f64, f64) = (82000.0, 0.28);
 
-/// The pressures of a surface pressed by a force, to 1e-9.
+/// The pressures of a surface `h` that a force presses, to a tolerance of 1e-9.
 pub fn pressures(grid: Grid, h: &[f64], force: f64) -> Vec<f64> {
     let scene = Scene::new(grid, h, Bodies::same(STEEL.0, STEEL.1), Load::Force(force));
     let (solver, stop, _) = solve(&scene, &Options { tolerance: 1e-9, ..Options::default() }).unwrap();
@@ -20,7 +20,7 @@ pub fn pressures(grid: Grid, h: &[f64], force: f64) -> Vec<f64> {
     solver.state().p.iter().map(|p| p.max(0.0)).collect()
 }
 
-/// The coefficients of two bodies of steel.
+/// The tangential coefficients of two steel bodies.
 pub fn steel(grid: &Grid) -> Tangential {
     let (g, nu) = STEEL;
     Tangential::new(grid.dx, grid.dy, Compliance { shear: 1.0 / g, poisson: nu / g, unlike: 0.0 })
@@ -30,7 +30,7 @@ pub fn solver(grid: &Grid) -> Solver {
     Solver::new(*grid, steel(grid), true, &Threads::One)
 }
 
-/// A locomotive's wheel: a Hertzian ellipse 6.3 x 12.6 mm, friction that falls from .33 to .14 with memory.
+/// A locomotive's wheel on a rail: a Hertzian ellipse of 6.3 x 12.6 mm (half axes). The coefficient of friction falls from .33 to .14, with memory.
 pub struct Wheel {
     pub grid: Grid,
     pub pressure: Vec<f64>,
@@ -47,11 +47,11 @@ pub const RUNNING: FrictionLaw = FrictionLaw {
     memory_distance: 0.003,
     memory_speed: 1.0,
 };
-/// h3/G3, in mm per N/mm2.
+/// The compliance of the elastic layer, thickness over shear modulus h3/G3, in mm per N/mm2.
 const LAYER: f64 = 1.25 / 8200.0;
 
 impl Wheel {
-    /// `times`: how often finer than in tractcurv.
+    /// The wheel on elements that are `times` smaller than those of tractcurv.
     pub fn new(times: usize) -> Wheel {
         Wheel::of(48 * times, 44 * times)
     }
@@ -88,7 +88,7 @@ impl Wheel {
     }
 }
 
-/// xi, `Fx/(.33 N)`, and the number of sticking elements of 1384.
+/// What CONTACT printed: the creepage xi, `Fx/(.33 N)`, and the number of sticking elements of the 1384 in contact.
 #[rustfmt::skip]
 const PRINTED: [(f64, f64, usize); 30] = [
     (1e-5, -0.001869, 1382), (0.001, -0.1825, 1342), (0.002, -0.3495, 1250), (0.003, -0.4928, 1124), (0.004, -0.6101, 998),
@@ -99,13 +99,13 @@ const PRINTED: [(f64, f64, usize); 30] = [
     (0.15, -0.6755, 0), (0.175, -0.643, 0), (0.2, -0.6146, 0), (0.225, -0.59, 0), (0.25, -0.5685, 0),
 ];
 
-/// How far a number is from one of four digits, in units of its last digit.
+/// The difference between a number and a printed one of four digits, in units of the last printed digit.
 pub fn off_by(number: f64, printed: f64) -> f64 {
     (number - printed).abs() / 10f64.powi(printed.abs().log10().floor() as i32 - 3)
 }
 
-/// All forces but one have the four printed digits, and that one differs by less than one unit of its last digit. The numbers of sticking elements are as
-/// printed.
+/// All forces but one have the four printed digits, and that one differs by less than one unit of its last digit. The numbers of sticking elements
+/// are as printed.
 #[test]
 fn a_creep_curve_with_falling_friction_is_that_of_contact() {
     let wheel = Wheel::new(1);
@@ -119,10 +119,10 @@ fn a_creep_curve_with_falling_friction_is_that_of_contact() {
         if off > 0.5 {
             others.push((xi, off));
         }
-        // CONTACT ends where an outer iteration changes slips by less than 1e-3.
+        // The bound is one unit of the last printed digit: CONTACT's outer iteration ends when slips change by less than 1e-3 (see stopping_rule.rs).
         assert!(off < 1.0, "{xi}: {part} {force}");
         assert_eq!(report.certificate.stick_count, sticks, "{xi}");
-        // By differences of the bound of the element with the largest pressure, for a fresh particle.
+        // .294 is computed by differences of the bound of the element with the largest pressure, for a fresh particle.
         assert!((report.law_slope - 0.294).abs() < 0.001, "{}", report.law_slope);
         most = most.max(report.products);
     }
@@ -147,9 +147,10 @@ fn a_fine_grid_takes_few_products_and_meets_the_conditions() {
     }
 }
 
-/// The residuals of a law in a shift from rest, or in steady rolling along x by one element, by direct sums: that of the slip over C relative to the rigid slip, and
-/// `|q| - g(slip)` relative to the bounds at rest. Also the displacements of the step relative to the rigid slip.
-pub fn left(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64; 3] {
+/// The rms residuals of a friction law by direct sums, for a shift from rest or for steady rolling along x by one element. Returns three numbers: the
+/// residual of the slip over C relative to the rigid slip; the rms of `|q| - g(slip)` relative to the bounds at rest; and the displacements of the
+/// step relative to the rigid slip.
+pub fn residuals(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64; 3] {
     let (grid, law) = (&wheel.grid, friction.law.unwrap());
     let Coefficient::Uniform(layer) = friction.compliance else { panic!("one layer") };
     let (q, n) = (&solution.traction, grid.len());
@@ -214,13 +215,13 @@ fn all_laws_meet_their_conditions_by_direct_sums() {
                 let law = FrictionLaw { fall, memory_distance, falling, half_speed: [1250.0, 3000.0], ..RUNNING };
                 let friction = wheel.friction(xi, spin, Some(law));
                 let (end, report, solution) = wheel.ended(&friction, 1e-7);
-                let [slip, bound, _] = left(&wheel, &friction, &solution);
+                let [slip, bound, _] = residuals(&wheel, &friction, &solution);
                 println!(
                     "{fall:?} {memory_distance} {falling:?} {xi} {end:?} slope {:.2} products {} left {slip:.1e} {bound:.1e}",
                     report.law_slope, report.products
                 );
                 assert_eq!(end, Outcome::Converged);
-                // The tolerance, and round-off of direct sums and of both slips.
+                // 1 % above the tolerance of 1e-7 allows for the round-off of direct sums, and for that of slips as differences of displacements.
                 assert!(slip <= 1.01e-7 && bound <= 1.01e-7, "{slip} {bound}");
             }
         }

@@ -1,11 +1,11 @@
-//! Laws that fall so steeply that several solutions are possible. A converged result meets the conditions; any other has a status without a
-//! certificate.
+//! Friction laws that fall so steeply that several solutions are possible. A converged result meets the conditions; any other result has another
+//! status, and a residual above the tolerance.
 
 use contact_normal::friction::{Report, Solution, SLIP};
 use contact_normal::scene::{Branch, Coefficient, Fall, Friction, FrictionLaw, Motion};
 use contact_normal::solver::Outcome;
 
-use super::laws::{left, Wheel, RUNNING};
+use super::laws::{residuals, Wheel, RUNNING};
 
 const TOLERANCE: f64 = 1e-6;
 
@@ -31,20 +31,22 @@ fn is_end(end: Outcome) -> bool {
     matches!(end, Outcome::Converged | Outcome::Stagnated | Outcome::IterationLimit)
 }
 
-/// Whether a solve converged. Then its conditions hold by direct sums; otherwise its residual is above the tolerance.
+/// Whether a solve converged. Asserts that the conditions of a converged result hold by direct sums, and that the residual of any other result is
+/// above the tolerance.
 fn is_solved(wheel: &Wheel, friction: &Friction<'_>, (end, report, found): &(Outcome, Report, Solution)) -> bool {
     assert!(is_end(*end), "{friction:?} {end:?}");
     if *end != Outcome::Converged {
         assert!(report.certificate.residual >= TOLERANCE, "{friction:?} {report:?}");
         return false;
     }
-    let [slip, bound, _] = left(wheel, friction, found);
-    // The tolerance, and round-off of direct sums.
+    let [slip, bound, _] = residuals(wheel, friction, found);
+    // 1 % of the tolerance allows for the round-off of direct sums.
     assert!(slip <= 1.01 * TOLERANCE && bound <= 1.01 * TOLERANCE, "{friction:?} {slip} {bound}");
     true
 }
 
-/// A scene with this `law_slope`: without memory the slope is proportional to 1/half_speed, with memory nearly.
+/// Changes the half speed of a law until the scene has this `law_slope`. Without memory the slope is proportional to 1/half_speed, with memory nearly
+/// so.
 fn steep(wheel: &Wheel, friction: &Friction<'static>, slope: f64) -> Friction<'static> {
     let mut found = *friction;
     for _ in 0..6 {
@@ -84,11 +86,12 @@ fn steep_laws_are_certified_or_said_not_to_be_solved() {
         counts[range][usize::from(is_solved)] += 1;
     }
     println!("law_slope .7 to 1, 1 to 2, 2 to 3: [not solved, solved] {counts:?}");
-    // Without some of each kind the test shows nothing.
+    // The test shows something only if some scenes of each range of slopes are solved and others are not.
     assert!(counts.iter().flatten().all(|count| *count > 0), "{counts:?}");
 }
 
-/// mu of each element by its slip, without memory; and the rms of `|q|` less the bounds, relative to that of the bounds at rest.
+/// The coefficient of each element by its slip, for a law without memory; and the rms of `|q|` less the bounds, relative to the rms of the bounds at
+/// rest.
 fn by_slips(wheel: &Wheel, friction: &Friction<'_>, found: &Solution) -> (Vec<f64>, f64) {
     let law = friction.law.unwrap();
     let (mut off, mut rest, mut mu) = (0.0, 0.0, Vec::new());
@@ -103,8 +106,8 @@ fn by_slips(wheel: &Wheel, friction: &Friction<'_>, found: &Solution) -> (Vec<f6
     (mu, (off / rest).sqrt())
 }
 
-/// The residuals of the bounds in turns of a host, which solves Coulomb's problem with the bounds of the last slips: the least one, and that of the
-/// last turn.
+/// A host's own iteration: each turn solves Coulomb's problem with the bounds of the last slips. Returns the smallest residual of the bounds of all
+/// turns, and that of the last turn.
 fn by_hand(wheel: &Wheel, friction: &Friction<'static>, is_high: bool) -> (f64, f64) {
     let fastest = 0.33 * friction.law.unwrap().at(1e150).0;
     let mut mu = vec![if is_high { fastest } else { 0.33 }; wheel.grid.len()];
@@ -120,7 +123,7 @@ fn by_hand(wheel: &Wheel, friction: &Friction<'static>, is_high: bool) -> (f64, 
     (least, last)
 }
 
-/// Turns that do not settle end without a certificate, and the result is the best of them.
+/// If the library's turns with updated coefficients do not settle, the solve ends without a certificate, and returns the best of them.
 #[test]
 fn turns_without_an_end_give_the_best_of_them() {
     let (wheel, mut draw, mut ended, mut gain) = (Wheel::of(24, 22), Draw(7), 0, 1.0f64);
@@ -145,15 +148,16 @@ fn turns_without_an_end_give_the_best_of_them() {
             report.products
         );
         assert!(residual >= TOLERANCE, "{residual}");
-        // Turns of the library have a tolerance of a twentieth of the residual, so that they differ, and the projection of tractions changes a result.
+        // The library solves each turn to a twentieth of the residual, so that its turns differ from those of the test. Also the projection of
+        // tractions onto their bounds changes a result. Hence 1.5.
         assert!(residual <= 1.5 * least, "{k}: {residual} {least}");
         (ended, gain) = (ended + 1, gain.max(last / residual));
     }
-    // Such scenes exist, and the last turn is worse than the best.
+    // Some scenes do not settle, and for one of them the last turn is worse than the best.
     assert!(ended > 3 && gain > 1.5, "{ended} {gain}");
 }
 
-/// If the products end before the turns do, the status is ITERATION_LIMIT, with the residual at that time.
+/// If the limit of products is reached before the turns settle, the status is ITERATION_LIMIT, with the residual at that time.
 #[test]
 fn turns_beyond_the_limit_end_within_it() {
     let wheel = Wheel::of(24, 22);
@@ -164,16 +168,16 @@ fn turns_beyond_the_limit_end_within_it() {
             let (end, report, found) = wheel.limited(&friction, TOLERANCE, limit);
             println!("{branch:?} {limit} {:.3e} products {}", report.certificate.residual, report.products);
             assert_eq!(end, Outcome::IterationLimit);
-            // A turn and the certificate take a few products, whatever the limit is.
+            // A first turn and the certificate take up to 20 products, even if the limit is lower.
             assert!(report.products <= limit.max(20) as f64, "{limit}: {}", report.products);
-            // The result is not worse than its residual, by its own slips.
+            // The reported residual is at least that of the returned tractions, recomputed from the returned slips.
             let (_, off) = by_slips(&wheel, &friction, &found);
             assert!(report.certificate.residual >= TOLERANCE.max(0.99 * off), "{off} {report:?}");
         }
     }
 }
 
-/// No particle meets the elements ahead of the contact, so that with memory their coefficients have no effect.
+/// Particles have not yet passed the elements ahead of the contact, so that with memory the coefficients of these elements have no effect.
 #[test]
 fn particles_are_fresh_until_they_enter_the_contact() {
     let wheel = Wheel::of(24, 22);
@@ -187,7 +191,7 @@ fn particles_are_fresh_until_they_enter_the_contact() {
         assert_eq!(alike.traction[i], other.traction[i], "element {i}");
         assert_eq!(alike.particles[i], other.particles[i], "element {i}");
     }
-    // The law has changed the coefficients of particles.
+    // The law has changed the coefficients of some particles in the contact.
     let changed = alike.particles.iter().zip(&wheel.pressure).any(|(had, p)| *p > 0.0 && had.coefficient < 0.329);
     assert!(changed);
 }

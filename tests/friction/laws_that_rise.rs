@@ -1,5 +1,6 @@
-//! Bounds that rise with the slip although the law falls: by a layer that hardens, and by memory of coefficients that differ between elements. The
-//! conditions are computed by direct sums and a forward sweep of the test, and single elements by bisection.
+//! Friction bounds may rise with the slip although the law falls: by a layer that hardens, or by the memory of coefficients that differ between
+//! elements. The conditions are recomputed by direct sums and by following the particles from the leading edge on; single elements are solved by
+//! bisection.
 
 use contact_normal::friction::{Report, Request, Solution};
 use contact_normal::grid::Grid;
@@ -13,7 +14,7 @@ use super::support::{solver, tangential};
 pub const POISSON: f64 = 0.3;
 pub const TOLERANCE: f64 = 1e-6;
 
-/// Pressures on elements of 1 x 1, of bodies with G = 1.
+/// Given pressures on elements of 1 x 1, for bodies with G = 1.
 pub struct Scene<'a> {
     pub grid: Grid,
     pub pressure: &'a [f64],
@@ -28,7 +29,8 @@ impl Scene<'_> {
         (end, report, solver.solution().unwrap().clone())
     }
 
-    /// The bound of element i at a slip, for a particle with this coefficient and limit, and the new coefficient and limit.
+    /// The bound of element i at a slip, if its particle arrives with the coefficient `had` and the yield `limit`. Also the new coefficient and limit
+    /// of the particle.
     pub fn bound(&self, i: usize, slip: f64, (had, limit): (f64, f64)) -> (f64, (f64, f64)) {
         let (rest, mut mu) = (self.friction.coefficient.at(i), self.friction.coefficient.at(i));
         if let Some(law) = self.friction.law {
@@ -57,8 +59,8 @@ impl Scene<'_> {
         }
     }
 
-    /// The rms residuals: that of the slip relative to the rigid slip, and that of `|q| - g` relative to the bounds at rest.
-    pub fn left(&self, found: &Solution) -> [f64; 2] {
+    /// The rms residual of the slip relative to the rigid slip, and that of `|q| - g` relative to the bounds at rest.
+    pub fn residuals(&self, found: &Solution) -> [f64; 2] {
         let Scene { grid, friction, .. } = self;
         let Coefficient::Uniform(soft) = friction.compliance else { panic!("one layer") };
         let (q, n, rolls) = (&found.traction, grid.len(), friction.motion != Motion::Shift);
@@ -104,13 +106,13 @@ fn falling(draw: &mut Draw, w: f64) -> FrictionLaw {
     FrictionLaw::new(fall, (0.4, 0.6), w * draw.between(0.5, 30.0), 1.0)
 }
 
-/// Pressures of a dome on mx x my elements.
+/// The pressures of a dome on mx x my elements, at least 0.05 everywhere.
 fn dome(mx: usize, my: usize) -> Vec<f64> {
     let part = |k: usize, m: usize| ((k as f64 - 0.5 * (m as f64 - 1.0)) / (0.6 * m as f64)).powi(2);
     (0..mx * my).map(|i| (1.0 - part(i % mx, mx) - part(i / mx, my)).max(0.05)).collect()
 }
 
-/// One element: `s + a g(s) = w`, or it sticks.
+/// A single element either slips, `s + a g(s) = w`, or sticks. The reference is found by bisection.
 #[test]
 fn one_element_under_a_law_on_a_layer_that_hardens_is_that_of_bisection() {
     let grid = Grid::new(1, 1, 1.0, 1.0).unwrap();
@@ -140,10 +142,11 @@ fn one_element_under_a_law_on_a_layer_that_hardens_is_that_of_bisection() {
         let sticks = w <= a * layer.yield_limit;
         let exact = if sticks { w / a } else { bound(low) };
         let (end, report, found) = scene.solve(1e-9);
-        // The solution is unique.
+        // With a slope below 1 the solution is unique.
         assert!(report.law_slope < 0.8, "{}", report.law_slope);
         assert_eq!(end, Outcome::Converged, "{k} {:?} {report:?}", scene.friction);
-        // The tolerance is relative to w and to .4; an error of the slip changes the bound by hardening times that error.
+        // The tolerance is relative to the rigid slip w, and for bounds to the coefficient at rest .4. An error of the slip changes the bound by the
+        // hardening times this error.
         let off = (found.traction[0][0] + exact).abs();
         assert!(off <= 1e-8 * (1.0 + w / a), "{k} {:?} {} {exact}", scene.friction, found.traction[0][0]);
         counts[usize::from(sticks)] += 1;
@@ -190,9 +193,9 @@ fn is_solved(scene: &Scene<'_>, k: usize) -> bool {
     true
 }
 
-/// Asserts the tolerance. In a shift it is relative to displacements as well.
+/// Asserts that the residuals are within the tolerance. In a shift the tolerance may also be relative to the displacements.
 fn assert_solved(scene: &Scene<'_>, found: &Solution, k: usize) {
-    let [slip, bound] = scene.left(found);
+    let [slip, bound] = scene.residuals(found);
     let displaced = found.slip.iter().zip(0..).map(|(s, i)| {
         let w = scene.friction.rigid_slip_at(&scene.grid, i);
         [(s[0] - w[0]).powi(2) + (s[1] - w[1]).powi(2), w[0] * w[0] + w[1] * w[1]]
@@ -202,7 +205,7 @@ fn assert_solved(scene: &Scene<'_>, found: &Solution, k: usize) {
     assert!(slip <= allowed && bound <= 1.01 * TOLERANCE, "{k} {:?} {slip} {bound}", scene.friction);
 }
 
-/// The particles of four elements come from elements with other coefficients.
+/// In a row of four elements each particle comes from an element with another coefficient.
 #[test]
 fn coefficients_that_differ_are_carried_with_the_particles() {
     let (mu, pressure) = ([0.7, 0.7, 0.4, 0.3], [0.61, 0.96, 0.96, 0.61]);
@@ -220,7 +223,8 @@ fn coefficients_that_differ_are_carried_with_the_particles() {
         let (end, report, found) = scene.solve(1e-8);
         println!("{branch:?} {end:?} {report:?}");
         assert_eq!(end, Outcome::Converged);
-        // The reference: 19 turns of Coulomb's problem with a fifth of each change of the coefficients, to 9e-12.
+        // The reference is a solution of Coulomb's problem by 19 turns, each with a fifth of the change of the coefficients, to 9e-12, printed to
+        // five digits.
         for (q, exact) in found.traction.iter().zip([0.30649, 0.16883, 0.11238, 0.06274]) {
             assert!((q[0] + exact).abs() <= 6e-6 && q[1] == 0.0, "{branch:?} {q:?} {exact}");
         }
@@ -233,7 +237,7 @@ fn memory_of_coefficients_that_differ_is_solved() {
     for k in 0..600 {
         let (mx, my) = (1 + (12.0 * draw.next()) as usize, 1 + (8.0 * draw.next()) as usize);
         let (grid, pressure) = (Grid::new(mx, my, 1.0, 1.0).unwrap(), dome(mx, my));
-        // If coefficients grow from the leading edge on, each particle has less than its element.
+        // If coefficients grow from the leading edge on, each particle brings a smaller coefficient than that of its element.
         let grows = draw.next() < 0.5;
         let mut mu: Vec<f64> = (0..mx * my).map(|_| draw.between(0.1, 0.8)).collect();
         if grows {
@@ -258,8 +262,8 @@ fn memory_of_coefficients_that_differ_is_solved() {
     assert!(solved > 200 && rising > 100, "{solved} {rising}");
 }
 
-/// The law falls faster than the layer hardens, so that no creepage gives some forces below mu N. The search must not let creepages grow beyond the
-/// range of numbers.
+/// The law falls faster than the layer hardens, so that for some forces below mu N there is no creepage. The search must not let creepages grow
+/// beyond the range of numbers.
 #[test]
 fn creepages_do_not_run_away_from_a_force_that_none_meets() {
     let pressure: Vec<f64> = (0..24).map(|k| 1.0 + 0.9 * (f64::from(k) * std::f64::consts::PI / 12.0).cos()).collect();
@@ -281,7 +285,7 @@ fn creepages_do_not_run_away_from_a_force_that_none_meets() {
         let scene = Scene { grid: Grid::new(24, 1, 1.0, 1.0).unwrap(), pressure: &pressure, friction };
         let (end, report, found) = scene.solve(1e-5);
         println!("{part} {end:?} {:?}", report.creepage);
-        // 1e30 times the displacements by mu p.
+        // The bound is 1e30 times the displacements by mu p.
         assert!(found.slip.iter().flatten().all(|s| s.abs() < 1e41), "{part} {end:?} {:?}", report.creepage);
         unmet += usize::from(end != Outcome::Converged);
     }

@@ -1,4 +1,4 @@
-//! Bounds that rise with the slip of all elements together: particles with less than the coefficient at rest, layers that harden.
+//! Friction bounds that rise together with the slips of all elements: particles below the coefficient at rest, and layers that harden.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Branch, Fall, Friction, FrictionLaw, Motion, PlasticLayer};
@@ -9,7 +9,7 @@ use super::laws_that_rise::{along, Scene, TOLERANCE};
 const PRESSURE: f64 = 0.03;
 const MU: f64 = 0.3;
 
-/// Pressures of a ball on m x m elements of side 1, and the shift of full slip.
+/// The pressures of a ball on m x m elements of side 1, and the shift at which all elements slip.
 fn ball(m: usize) -> (Grid, Vec<f64>, f64) {
     let radius = 0.45 * m as f64;
     let off = |k: usize| (k as f64 - 0.5 * (m - 1) as f64) / radius;
@@ -17,8 +17,8 @@ fn ball(m: usize) -> (Grid, Vec<f64>, f64) {
     (Grid::new(m, m, 1.0, 1.0).expect("a grid"), (0..m * m).map(of).collect(), MU * PRESSURE * radius)
 }
 
-/// The bound of one element hardly changes its own slip, but those of all elements together do. Turns with the bounds of the last slips would
-/// alternate.
+/// The slip of one element hardly changes by its own bound, but it does by the bounds of all elements together. Turns with the bounds of the last
+/// slips would alternate.
 #[test]
 fn particles_below_the_coefficient_at_rest_find_their_solution() {
     let mut found = 0;
@@ -40,9 +40,12 @@ fn particles_below_the_coefficient_at_rest_find_their_solution() {
                     let scene = Scene { grid, pressure: &pressure, friction };
                     let (outcome, report, solution) = scene.solve(TOLERANCE);
                     assert_eq!(outcome, Outcome::Converged, "{m} {had} {memory} {part}: {report:?}");
-                    let left = scene.left(&solution);
-                    // The tolerance, and the round-off of sums over 1600 elements.
-                    assert!(left.iter().all(|left| *left <= 2.0 * TOLERANCE), "{m} {had} {memory} {part}: {left:?}");
+                    let residuals = scene.residuals(&solution);
+                    // Twice the tolerance, for the round-off of sums over up to 1600 elements.
+                    assert!(
+                        residuals.iter().all(|residual| *residual <= 2.0 * TOLERANCE),
+                        "{m} {had} {memory} {part}: {residuals:?}"
+                    );
                     found += 1;
                 }
             }
@@ -51,7 +54,7 @@ fn particles_below_the_coefficient_at_rest_find_their_solution() {
     assert_eq!(found, 90);
 }
 
-/// Without a law no bound falls: the solution is unique, and all branches have to find it.
+/// Without a friction law no bound falls with the slip: the solution is unique, and each branch has to find it.
 #[test]
 fn all_branches_beside_a_layer_that_hardens_are_one() {
     for m in [12, 24] {

@@ -55,14 +55,14 @@ fn all_motions_meet_the_conditions() {
                     let (report, solution) = run(&mut solver, &case.bound, &friction, 1e-6);
                     let none = vec![[0.0; 2]; case.grid.len()];
                     let (place, found) = ((&case.grid, case.nu), (&report, &solution));
-                    let left = residual(place, &case.bound, &friction, &none, found);
-                    // The tolerance, and round-off of two products.
-                    assert!(left <= 1.001e-6, "{seed} {motion:?} {step} {forces}: {left}");
+                    let slip_residual = residual(place, &case.bound, &friction, &none, found);
+                    // The tolerance of the solve, and 1e-9 for the different round-off of direct sums and FFT products.
+                    assert!(slip_residual <= 1.001e-6, "{seed} {motion:?} {step} {forces}: {slip_residual}");
                     most = most.max(report.products);
                     if motion == Motion::SteadyRolling {
                         continue;
                     }
-                    // The next step.
+                    // The next step continues from these tractions, with 80 % of the forces.
                     let prescribed = friction.prescribed.map(|prescribed| match prescribed {
                         Prescribed::Force(force) => Prescribed::Force(0.8 * force),
                         given => given,
@@ -70,13 +70,16 @@ fn all_motions_meet_the_conditions() {
                     let (previous, spin) = (Previous::Kept, 0.5 * friction.spin);
                     let next = Friction { previous, spin, prescribed, ..friction };
                     let (report, after) = run(&mut solver, &case.bound, &next, 1e-6);
-                    let left = residual(place, &case.bound, &next, &solution.traction, (&report, &after));
-                    assert!(left <= 1.001e-6, "{seed} {motion:?} {step} {forces}, the next step: {left}");
+                    let slip_residual = residual(place, &case.bound, &next, &solution.traction, (&report, &after));
+                    assert!(
+                        slip_residual <= 1.001e-6,
+                        "{seed} {motion:?} {step} {forces}, the next step: {slip_residual}"
+                    );
                 }
             }
         }
     }
-    // Without a layer these take up to 60.
+    // Without a layer the same cases take up to 60 products.
     assert!(most <= 80.0, "{most} products");
 }
 
@@ -121,9 +124,9 @@ fn compliances_that_differ_by_a_hundred_times_take_few_products() {
             let friction = Friction { motion, compliance, ..case.friction };
             let (report, solution) = run(&mut solver(&case.grid, case.nu), &case.bound, &friction, 1e-6);
             let none = vec![[0.0; 2]; case.grid.len()];
-            let left = residual((&case.grid, case.nu), &case.bound, &friction, &none, (&report, &solution));
-            // The tolerance, and round-off of two products.
-            assert!(left <= 1.001e-6, "{seed} {motion:?}: {left}");
+            let slip_residual = residual((&case.grid, case.nu), &case.bound, &friction, &none, (&report, &solution));
+            // The tolerance of the solve, and 1e-9 for the different round-off of direct sums and FFT products.
+            assert!(slip_residual <= 1.001e-6, "{seed} {motion:?}: {slip_residual}");
             of_both[k] += report.products;
             of_motion[seed as usize % 3][k] += report.products;
             most[k] = most[k].max(report.products);
@@ -132,7 +135,8 @@ fn compliances_that_differ_by_a_hundred_times_take_few_products() {
     assert!(of_both[1] <= 2.0 * of_both[0], "{of_both:?} products, at most {most:?}, {of_motion:?}");
 }
 
-/// The previous tractions are large relative to the change in a nearly free step. Residuals must be in the units of the tolerance.
+/// In a step of small creepage the tractions hardly change, so that the previous ones are large relative to the change. The residual must still be in
+/// the units in which the tolerance is given.
 #[test]
 fn nearly_free_steps_beside_a_soft_layer_meet_the_tolerance() {
     for seed in 0..4 {

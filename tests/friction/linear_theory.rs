@@ -1,4 +1,4 @@
-//! Creepages near zero: Kalker's linear theory.
+//! For creepages near zero forces are proportional to creepages and spin, with the coefficients of Kalker's linear theory.
 
 use contact_normal::friction::{Compliance, Solver, Tangential};
 use contact_normal::scene::{Friction, Motion, Prescribed};
@@ -7,7 +7,7 @@ use contact_normal::threads::Threads;
 use super::steady_scenes::ellipse;
 use super::support::run;
 
-/// `a/b`, a in the direction of rolling, and for nu = 0, 1/4, 1/2 C11, C22 and C23 (Kalker 1990, table E.3).
+/// For each `a/b`, a in the direction of rolling: C11, C22 and C23, each for nu = 0, 1/4, 1/2 (Kalker 1990, table E.3).
 #[rustfmt::skip]
 #[allow(clippy::approx_constant)] // C22 of one of them is 3.14.
 const TABLE: [(f64, [[f64; 3]; 3]); 5] = [
@@ -18,9 +18,9 @@ const TABLE: [(f64, [[f64; 3]; 3]); 5] = [
     (5.0, [[6.96, 7.78, 8.82], [6.96, 8.14, 9.79], [5.72, 6.63, 7.89]]),
 ];
 
-/// `-F/(G (a b)^n)` over the creepage: `Fx = -G a b C11 xi, Fy = -G a b C22 eta - G (a b)^(3/2) C23 phi`.
+/// The coefficients C11, C22 and C23 from computed forces: `Fx = -G a b C11 xi, Fy = -G a b C22 eta - G (a b)^(3/2) C23 phi`.
 fn slopes(ratio: f64, nu: f64, m: usize) -> [f64; 3] {
-    // a = 1.
+    // The semi-axis in the rolling direction is a = 1.
     let b = 1.0 / ratio;
     let (grid, g) = ellipse(b, m);
     let compliance = Compliance { shear: 1.0, poisson: nu, unlike: 0.0 };
@@ -43,10 +43,11 @@ fn slopes(ratio: f64, nu: f64, m: usize) -> [f64; 3] {
 fn creepages_near_zero_have_kalkers_coefficients() {
     for (ratio, known) in TABLE {
         for (k, nu) in [0.0, 0.25, 0.5].into_iter().enumerate() {
-            // Convergence is of first order. In the most slender ellipse tractions rise within few elements.
+            // The error is of first order in the element. In the most slender ellipse tractions rise within few elements, so that it has more
+            // elements.
             let found = slopes(ratio, nu, if ratio < 5.0 { 128 } else { 256 });
             for (found, known) in found.into_iter().zip(known.map(|known| known[k])) {
-                // 1 %, and half a unit of the third digit.
+                // 1 % for the error of the discretisation, and half a unit of the third digit, to which the table is printed.
                 let last = 10f64.powf(known.log10().floor() - 2.0);
                 assert!((found - known).abs() <= 0.01 * known + 0.5 * last, "{ratio} {nu}: {found} {known}");
             }

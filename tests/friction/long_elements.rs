@@ -1,4 +1,5 @@
-//! Rough lines of long elements, as for line contacts: tractions displace the whole line nearly uniformly. Also bounds of any ratio on two elements.
+//! Rough lines of long elements, as for line contacts, on which each traction displaces the whole line nearly uniformly. Also steady rolling of two
+//! elements whose bounds have any ratio.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +11,7 @@ use contact_normal::solver::{self as normal, Options, Outcome};
 use super::steady::rolling;
 use super::support::{residual, solver};
 
-/// The round-off of two products by different sums.
+/// The difference that the round-off of direct sums and of FFT products may make in a residual.
 const ROUND_OFF: f64 = 1e-9;
 
 /// Pressures on a line of waves with random phases and amplitudes that fall as `k^-1.3`.
@@ -35,7 +36,7 @@ fn pressures(grid: &Grid, seed: u64) -> (Vec<f64>, f64) {
     (solved.state().p.clone(), largest)
 }
 
-/// Gradients and Newton's method cycle on most of these lines. The projected Newton method descends.
+/// The gradient method and Newton's method cycle on most of these lines. The projected Newton method, which only descends, solves them.
 #[test]
 fn shifts_of_rough_lines_are_solved_however_long_their_elements() {
     for (seed, dy) in [(1, 1e5), (2, 1e5), (3, 1e5), (4, 1e5), (5, 1e4), (6, 1e4), (7, 1e3)] {
@@ -48,12 +49,13 @@ fn shifts_of_rough_lines_are_solved_however_long_their_elements() {
         let (end, report) = solver.solve(&Request::new(&p, &friction, 1e-6), &mut |_, _| true).unwrap();
         assert_eq!(end, Outcome::Converged, "{seed}: {report:?}");
         let none = vec![[0.0; 2]; grid.len()];
-        let left = residual((&grid, 0.3), &p, &friction, &none, (&report, solver.solution().unwrap()));
-        assert!(left <= 1e-6 + ROUND_OFF, "{seed}: {left:e}");
+        let slip_residual = residual((&grid, 0.3), &p, &friction, &none, (&report, solver.solution().unwrap()));
+        assert!(slip_residual <= 1e-6 + ROUND_OFF, "{seed}: {slip_residual:e}");
     }
 }
 
-/// Bounds below the round-off of the largest one: their tractions are negligible, and their elements stick or slip by their slip.
+/// The smaller bound may be below the round-off of the larger one. Its traction is then negligible, and the element sticks or slips according to its
+/// slip.
 #[test]
 fn bounds_of_any_ratio_roll() {
     let grid = Grid::new(2, 1, 1.0, 1.0).unwrap();
@@ -66,8 +68,8 @@ fn bounds_of_any_ratio_roll() {
             let mut solver = solver(&grid, 0.3);
             let (end, report) = solver.solve(&Request::new(&p, &friction, 1e-6), &mut |_, _| true).unwrap();
             assert_eq!(end, Outcome::Converged, "{p:?} {angle}: {report:?}");
-            let left = residual((&grid, 0.3), &p, &friction, &[], (&report, solver.solution().unwrap()));
-            assert!(left <= 1e-6 + ROUND_OFF, "{p:?} {angle}: {left:e}");
+            let slip_residual = residual((&grid, 0.3), &p, &friction, &[], (&report, solver.solution().unwrap()));
+            assert!(slip_residual <= 1e-6 + ROUND_OFF, "{p:?} {angle}: {slip_residual:e}");
         }
     }
 }

@@ -1,4 +1,5 @@
-//! The loop of a host: NORM and TANG in turns on one handle. Solves without friction do not change the tractions from which the next step continues.
+//! The time loop of a host, which solves normal (NORM) and tangential problems (TANG) in turns on one handle. Solves without friction do not change
+//! the tractions from which the next step continues.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
@@ -17,7 +18,7 @@ fn converged<'a>(solver: &'a mut Solver, scene: &Scene<'_>) -> &'a Solver {
     solver
 }
 
-/// Tractions and slips of three steps: NORM and TANG on one handle, or, if `alone`, TANG on its own handle.
+/// The tractions and slips of three steps, as bits: NORM and TANG on one handle, or, if `alone`, TANG on a handle of its own.
 fn three_steps((grid, h): &(Grid, Vec<f64>), bodies: Bodies, alone: bool) -> Vec<Vec<[u64; 4]>> {
     let scene = |k: usize, friction| Scene {
         friction,
@@ -47,7 +48,7 @@ fn a_normal_problem_between_two_steps_leaves_their_tractions() {
     }
 }
 
-/// Whole solves: a solve without friction between two steps has no effect on the second one.
+/// The same with solves of both problems at once: a solve without friction between two steps has no effect on the second step.
 #[test]
 fn a_step_continues_after_solves_without_friction() {
     let (grid, h) = ball(24, 0.1);

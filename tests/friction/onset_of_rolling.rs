@@ -1,5 +1,5 @@
-//! A ball is pushed sideways, and then rolls with the same force until it is steady: beside the output of CONTACT for its example catt_to_cart
-//! (Kalker 1990, section 5.2.2.5), and beside the steady solution.
+//! A ball is pushed sideways, and then rolls with the same force until the tractions are steady. Compared with the output of CONTACT for its example
+//! catt_to_cart (Kalker 1990, section 5.2.2.5), and with the steady solution.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
@@ -11,7 +11,7 @@ const M: usize = 33;
 const FORCE: f64 = 0.4705;
 const MU: f64 = 0.4013;
 
-/// 33 x 33 elements of 0.25 (CONTACT has a 34th column, which is never in contact), h = .002963 r^2.
+/// The ball: 33 x 33 elements of side 0.25 (CONTACT has a 34th column, which is never in contact), h = .002963 r^2.
 fn ball() -> (Grid, Vec<f64>) {
     let grid = grid(M, M, 0.25, 0.25);
     (grid, paraboloid(&grid, 0.002963))
@@ -37,8 +37,8 @@ fn counts(report: &Report) -> (u64, u64) {
     (certificate.stick_count as u64, certificate.slip_count as u64)
 }
 
-/// A shift, then `steps` steps of rolling; `tell` gets the report of each. Returns the largest difference between the last and the steady
-/// tractions, relative to the largest mu p.
+/// Solves a shift, then `steps` steps of transient rolling. `tell` gets the number and the report of each step. Returns the largest difference
+/// between the last tractions and those of steady rolling, relative to the largest mu p.
 fn roll(steps: u32, distance: f64, tell: &mut dyn FnMut(u32, &Report)) -> f64 {
     let ball = ball();
     let (steady, outcome, report) =
@@ -62,7 +62,7 @@ fn roll(steps: u32, distance: f64, tell: &mut dyn FnMut(u32, &Report)) -> f64 {
 
 #[test]
 fn contacts_onset_of_rolling_is_met() {
-    // The step, the shift or creepage as printed, half of its last digit, elements that stick and slip.
+    // For each step: the shift or creepage that CONTACT printed, half a unit of its last digit, and the numbers of elements in stick and in slip.
     let printed = [
         (0, 1.774e-2, 5e-6, (305, 316)),
         (1, 1.824e-3, 5e-7, (422, 199)),
@@ -85,14 +85,15 @@ fn contacts_onset_of_rolling_is_met() {
         }
     });
     assert_eq!(met, printed.len());
-    // Over two lengths of the contact, each step one element: .59 after the first step, and in the end a quarter after every 8 steps.
+    // The ball rolls over two lengths of the contact, one element a step. The difference is .59 after the first step, and in the end falls to a
+    // quarter every 8 steps.
     assert!(apart <= 2e-4, "{apart}");
 }
 
 #[test]
 fn the_onset_of_rolling_ends_at_steady_rolling() {
-    // Over four lengths of the contact, each step two elements.
+    // The ball rolls over four lengths of the contact, two elements a step.
     let apart = roll(56, 0.5, &mut |_, _| ());
-    // With a residual of 1e-8 both tractions have an error of some 1e-7.
+    // With a residual of 1e-8 either solution has an error of some 1e-7 in the tractions.
     assert!(apart <= 1e-6, "{apart}");
 }

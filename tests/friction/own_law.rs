@@ -1,4 +1,4 @@
-//! A friction law of the host: it changes the coefficient of each element between solves with one handle.
+//! A friction law that the host program evaluates itself: it changes the coefficient of each element between solves with one handle.
 
 use contact_normal::friction::{Request, Solution};
 use contact_normal::scene::{Coefficient, Friction, FrictionLaw, Motion, Prescribed, Previous};
@@ -15,8 +15,8 @@ fn coefficients(wheel: &Wheel, found: &Solution) -> Vec<f64> {
     slips.map(|(s, is)| 0.33 * LAW.at(if *is == 2 { s[0].hypot(s[1]) / duration } else { 0.0 }).0).collect()
 }
 
-/// Steady rolling. Each solve has the coefficients that belong to the last slips. The solves converge to the result of the same law in the library, and
-/// each takes at most one product more than a solve with one coefficient.
+/// Steady rolling. For each solve the host computes the coefficients from the slips of the last solve. These solves converge to the result of the
+/// same law in the library. Each takes at most one product more than a solve with one coefficient.
 #[test]
 fn turns_with_a_law_of_the_host_lead_to_the_librarys() {
     let wheel = Wheel::new(1);
@@ -34,19 +34,20 @@ fn turns_with_a_law_of_the_host_lead_to_the_librarys() {
             let (end, report) =
                 handle.solve(&Request::new(&wheel.pressure, &friction, 1e-6), &mut |_, _| true).unwrap();
             assert_eq!(end, Outcome::Converged);
-            // The first solve has no start; the others start from the last tractions.
+            // The first solve starts from zero tractions, the others from the last ones.
             assert!(report.products <= one.1.products + 1.0, "{turn}: {} {}", report.products, one.1.products);
             force = report.force[0];
             mu = coefficients(&wheel, handle.solution().unwrap());
         }
         println!("{xi} {force} {:?}", known.force);
-        // The error of a turn is its tolerance of 1e-6 plus less than half of the error of the turn before: 2e-6 in the end. The relative error of
-        // the force is at most that of the slips. The result of the law in the library has an error of 1e-8.
+        // A turn is one solve with updated coefficients. Its error is its tolerance of 1e-6 plus less than half of the error of the turn before: 2e-6
+        // in the end. The relative error of the force is at most that of the slips. The result of the library's law has an error of 1e-8.
         assert!((force / known.force[0] - 1.0).abs() <= 2.1e-6, "{force} {:?}", known.force);
     }
 }
 
-/// Transient rolling with new coefficients in each step takes nearly as many products as with one coefficient. Tractions obey the bounds of their step.
+/// Transient rolling with new coefficients in each step takes nearly as many products as with one coefficient. Tractions obey the bounds of their own
+/// step.
 #[test]
 fn steps_with_coefficients_of_each_step_take_as_many_products_as_with_one() {
     let wheel = Wheel::new(1);
@@ -78,11 +79,12 @@ fn steps_with_coefficients_of_each_step_take_as_many_products_as_with_one() {
     };
     let [own, one] = [products(true), products(false)];
     println!("{own} {one}");
-    // Changed bounds may take another iteration in some steps: less than one in six.
+    // Changed bounds may take one more iteration in some steps, here in less than one of six.
     assert!(own <= 1.15 * one, "{own} {one}");
 }
 
-/// A step without friction leaves particles without coefficients. In the next step they have those at rest, as without a step before.
+/// After a step without friction the library knows no coefficients of particles. In the next step particles have the coefficient at rest, as in a
+/// first step.
 #[test]
 fn particles_are_fresh_after_a_step_without_friction() {
     let wheel = Wheel::new(1);
@@ -101,7 +103,7 @@ fn particles_are_fresh_after_a_step_without_friction() {
     let mu = |found: &Solution| found.particles.iter().map(|particle| particle.coefficient).fold(0.0, f64::max);
     assert!(mu(&alone) > 0.3);
     for (q, other) in after.traction.iter().zip(&alone.traction) {
-        // Two solves to a residual of 1e-8, of tractions up to .33 times 1200 N/mm^2.
+        // Two solves to a residual of 1e-8, with tractions of up to .33 times 1200 N/mm^2: 1e-4 is the relative error that this allows.
         assert!((q[0] - other[0]).hypot(q[1] - other[1]) <= 1e-4 * 400.0, "{q:?} {other:?}");
     }
 }

@@ -1,5 +1,4 @@
-//! A layer between the bodies that yields, compared with the output of CONTACT (its examples carter_plast, catt2d_plast and plastic_3bl;
-//! eve70a/CONTACT).
+//! A plastic layer between the bodies, compared with the output of CONTACT (its examples carter_plast, catt2d_plast and plastic_3bl; eve70a/CONTACT).
 
 use contact_normal::friction::{Report, Solution, PLASTIC, SLIP, STICK};
 use contact_normal::grid::Grid;
@@ -16,7 +15,7 @@ fn along(xi: f64) -> [Prescribed; 2] {
     [Prescribed::Creepage(xi), Prescribed::Creepage(0.0)]
 }
 
-/// The numbers of elements that stick, that slip, and at the yield limit of the layer.
+/// The numbers of elements in stick, in slip, and at the yield limit of the layer.
 fn counts(solution: &Solution) -> [usize; 3] {
     [STICK, SLIP, PLASTIC].map(|what| solution.stick_slip.iter().filter(|side| **side == what).count())
 }
@@ -55,8 +54,8 @@ fn steady_rolling_over_a_layer_that_yields_is_that_of_contact() {
     }
 }
 
-/// `Fx/(.5 N)`; stick, slip, plastic.
-// .6366 is the printed value, not 2/pi.
+/// What CONTACT printed for each step: `Fx/(.5 N)`, and the numbers of elements in stick, in slip, and at the yield limit. (.6366 is the printed
+/// value, not 2/pi.)
 #[allow(clippy::approx_constant)]
 #[rustfmt::skip]
 const STEPS: [(f64, [usize; 3]); 49] = [
@@ -77,7 +76,7 @@ fn steps_from_a_shift_to_rolling_are_those_of_contact() {
     let layer = Some(PlasticLayer { yield_limit: 35.0, hardening: 123_000.0 });
     let shift = |xi: f64| Friction { prescribed: along(xi), layer, ..Friction::new(0.5) };
     let part = |report: &Report| report.force[0] / (0.5 * FORCE);
-    // The shift whose force is .6 mu N, printed as -1.976e-3.
+    // The shift whose force is .6 mu N, found by bisection. CONTACT printed -1.976e-3.
     let (mut low, mut high) = (-2.1e-3, -1.8e-3);
     for _ in 0..20 {
         let middle = 0.5 * (low + high);
@@ -105,12 +104,12 @@ fn steps_from_a_shift_to_rolling_are_those_of_contact() {
     println!("{} products a step", products / STEPS.len() as f64);
 }
 
-/// The shear modulus of a layer of .02 mm, its yield limit and hardening, and its steps.
+/// A layer of .02 mm: its shear modulus, yield limit and hardening, and its steps. A step is a shift and the traction that CONTACT printed.
 type Sheared = (f64, f64, f64, &'static [(f64, f64)]);
 
-/// One element of 1 mm x 1 mm under 900 N with mu = .7 on four layers: shifts, and the tractions that CONTACT printed to four digits. The first case
-/// has no layer.
+/// One element of 1 mm x 1 mm under 900 N with mu = .7: a shift without a layer, and the traction that CONTACT printed to four digits.
 const BARE: (f64, f64) = (-0.001, 84.97);
+/// The same element on four layers.
 #[rustfmt::skip]
 const SHEARED: [Sheared; 4] = [
     (176.63, 560.0, 0.0, &[
@@ -132,7 +131,7 @@ const SHEARED: [Sheared; 4] = [
     ]),
 ];
 
-/// Half of the last of four printed digits.
+/// Half a unit of the last digit of a number that is printed to four digits.
 fn half_a_digit(printed: f64) -> f64 {
     if printed < 100.0 {
         0.005
@@ -163,7 +162,8 @@ fn one_element_on_a_layer_that_hardens_or_softens_is_that_of_contact() {
             };
             let (_, solution) = run(&mut solver, &[900.0], &friction, 1e-12);
             let found = solution.traction[0][0];
-            // In closed form: q = q' - xi/(a0 + c) in stick, otherwise the limit of the layer after its slip.
+            // The solution in closed form: q = q' - xi/(a0 + c) in stick, with the influence a0 of the element on itself and the compliance c of the
+            // layer; otherwise q is the limit of the layer after its slip.
             let (stiff, elastic) = (own + compliance, q - xi / (own + compliance));
             if elastic.abs() > limit {
                 let slip = (elastic.abs() - limit) * stiff / (1.0 + hardening * stiff);
@@ -181,8 +181,9 @@ fn one_element_on_a_layer_that_hardens_or_softens_is_that_of_contact() {
     assert_eq!(steps, 57);
 }
 
-/// One element below a pressure of 350, with a coefficient that falls from .3 and a layer that yields at 70 and softens. Yielding begins at rest, and the layer
-/// goes on softening where friction falls below 70. So the traction never rises with the shift.
+/// One element under a pressure of 350, with a coefficient that falls from .3, on a layer that yields at 70 and softens. The layer yields before the
+/// element slips (70 is below .3 times 350), and goes on softening when friction has fallen below 70. So the traction never rises with the shift,
+/// after yield.
 #[test]
 fn a_layer_softens_where_friction_falls_below_its_limit() {
     let grid = Grid::new(1, 1, 0.25, 0.25).unwrap();
@@ -203,13 +204,13 @@ fn a_layer_softens_where_friction_falls_below_its_limit() {
             let [x, y] = solution.traction[0];
             let traction = x.hypot(y);
             assert!(report.law_slope < 1.0, "{}", report.law_slope);
-            // Before the layer yields the element sticks, and the traction grows.
+            // Until the layer yields, the element sticks and the traction grows with the shift.
             if shift > 70.0 * steel(&grid).at(0.0, 0.0)[0] {
                 assert!(traction <= before * (1.0 + 1e-6), "{branch:?} {shift}: {traction} after {before}");
                 before = traction;
             }
         }
-        // The least limit of a layer that softens is a thousandth of that of fresh material.
+        // The library keeps the limit of a layer that softens at a thousandth of that of fresh material, or more.
         assert!((before - 0.07).abs() <= 1e-6, "{branch:?}: {before}");
     }
 }

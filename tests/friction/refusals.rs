@@ -1,5 +1,5 @@
-//! A scene that is refused for its friction after its normal problem is solved does not change the handle: its last result, or none, and the state
-//! from which a step in time continues.
+//! If a scene is refused for its friction after its normal problem is solved, the handle does not change: it keeps its last result (or none), and the
+//! state from which a step in time continues.
 
 use contact_normal::friction::Solution;
 use contact_normal::grid::Grid;
@@ -13,10 +13,10 @@ use super::support::ball;
 const LIKE: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
 const UNLIKE: Bodies = Bodies { shear_modulus: [1.0, 3.0], poisson_ratio: [0.2, 0.4] };
 
-/// Tractions and slips as bits, and stick or slip of each element.
+/// The tractions and slips as bits, and whether each element sticks or slips.
 type Tractions = (Vec<[u64; 2]>, Vec<[u64; 2]>, Vec<i32>);
 
-/// All that a handle shows of its last result.
+/// Everything that a caller can read of a handle's last result.
 #[derive(Debug, PartialEq)]
 struct Shown {
     has_solved: bool,
@@ -48,7 +48,7 @@ fn pushed() -> Friction<'static> {
     Friction { prescribed: [Prescribed::Creepage(-0.004), Prescribed::Creepage(0.001)], ..Friction::new(0.3) }
 }
 
-/// Frictions that are refused, most of them after the pressures are known.
+/// Settings of friction that are refused, most of them only after the pressures are known.
 fn refused(first_has_tractions: bool) -> Vec<(&'static str, Friction<'static>)> {
     let forces = |x, y| Friction { prescribed: [Prescribed::Force(x), Prescribed::Force(y)], ..Friction::new(0.3) };
     let creepage = |x| Friction { prescribed: [Prescribed::Creepage(x); 2], ..Friction::new(0.3) };
@@ -104,7 +104,7 @@ fn a_handle_keeps_its_result_and_its_way_on() {
                         let what = format!("{what}, {bodies:?} {load:?} {initial_guess:?} {}", first.is_some());
                         assert!(solver.solve(&bad, &options, None, None).is_err(), "{what}");
                         assert!(shown(&solver) == before, "{what}: another result");
-                        // The next step has the result that it has without the refusal.
+                        // The next step has the result that it would have without the refused solve.
                         let again = Options { initial_guess: InitialGuess::Previous, ..Options::default() };
                         let previous = if first.is_some() { Previous::Kept } else { Previous::None };
                         let friction = first.map(|friction| Friction { previous, ..friction });
@@ -140,7 +140,7 @@ fn without_a_result_there_is_none_after_a_refusal() {
             assert!(!solver.has_solved() && solver.friction().is_none(), "{what}");
             let (stop, _) = solver.solve(&good, &Options::default(), None, None).unwrap();
             assert_eq!(stop, Outcome::Converged, "{what}");
-            // The result of a scene without friction has no tractions, although the next step may continue from earlier ones.
+            // The last result is that of a scene without friction, which has no tractions, although a next step may continue from earlier ones.
             if friction.previous == Previous::Kept {
                 continue;
             }
@@ -152,7 +152,7 @@ fn without_a_result_there_is_none_after_a_refusal() {
     }
 }
 
-/// Other tangential coefficients need other operators. If they are refused, the tractions with the earlier ones remain the last result.
+/// Other tangential coefficients need other operators. If they are refused, the last result remains: the tractions with the earlier coefficients.
 #[test]
 fn other_tables_that_are_refused_leave_the_tractions_of_those_before() {
     let (grid, h) = ball(16, 0.15);

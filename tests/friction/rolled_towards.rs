@@ -1,4 +1,5 @@
-//! Coefficients of bodies that relax and roll in one direction, in steps of another direction: refused by name.
+//! Influence coefficients of visco-elastic bodies belong to one rolling direction. Steps in another direction are refused, with a message that names
+//! the direction.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
 
@@ -11,7 +12,7 @@ use contact_normal::solver::{solve, solve_tangential, Options, Outcome, Solver};
 use contact_normal::visco::{rolling_table, RollingBody, Series};
 
 const M: usize = 9;
-/// The tables have two more offsets than the grid, for a step.
+/// The tables have two offsets more than the grid, because a step of rolling needs coefficients beyond it.
 const REACH: (usize, usize) = (M + 2, M + 2);
 const WIDTH: usize = 2 * (M + 2);
 
@@ -19,7 +20,8 @@ fn body(relaxing: f64, compliance: f64) -> RollingBody {
     RollingBody { compliance, series: Series::new(1.0, &[relaxing], &[1.0]).expect("a series") }
 }
 
-/// The coefficients of pressures and of tractions of bodies that roll at a speed, or, for None, of bodies that do not relax.
+/// The coefficients of pressures and of tractions, for bodies that relax and roll at a speed, or, if the speed is `None`, for bodies that do not
+/// relax.
 fn coefficients(speed: Option<f64>) -> (Vec<f64>, [Vec<f64>; 3]) {
     let relaxing = if speed.is_some() { 0.6 } else { 0.0 };
     let both = |compliance: f64| [body(relaxing, compliance), body(relaxing, compliance)];
@@ -53,7 +55,7 @@ impl Case {
         Scene { influence, ..self.scene_of_tractions(motion, step, false) }
     }
 
-    /// A scene with tangential coefficients only.
+    /// A scene with tables for tractions but not for pressures.
     fn scene_of_tractions(&self, motion: Motion, (direction, distance): (f64, f64), by_row: bool) -> Scene<'_> {
         let coefficients = self.own.each_ref().map(|values| &values[..]);
         let (cx, cy) = (REACH.0, if by_row { M } else { REACH.1 });
@@ -71,11 +73,11 @@ impl Case {
         }
     }
 
-    /// The refusals of a solve, of a solve on a handle that was set up with a step along +x or -x, and of the tangential problem alone.
+    /// The errors of a solve, of a solve on a handle that was set up with a step along +x or -x, and of the tangential problem alone.
     fn refusals(&self, motion: Motion, step: (f64, f64), set_up: Motion, direction: f64) -> [Option<Error>; 3] {
         let (scene, options) = (self.scene(motion, step), Options::default());
         let mut handle = Solver::new(&self.scene(set_up, (direction, 1.0)), &options).unwrap();
-        // The handle has the coefficients: the scene need not name them.
+        // The handle already has the coefficients, so that the scene does not contain them.
         let unnamed = Scene { influence: None, ..scene.clone() };
         let pressure = vec![1.0; M * M];
         [
@@ -89,7 +91,8 @@ impl Case {
 const STEPS: [(f64, f64); 6] =
     [(0.0, 1.0), (PI, 1.0), (FRAC_PI_2, 1.0), (-FRAC_PI_2, 2.0), (FRAC_PI_4, SQRT_2), (-3.0 * FRAC_PI_4, 2.0 * SQRT_2)];
 
-/// Both tables have one direction. Steps in other directions are refused, and the message names the right direction and a remedy.
+/// The coefficients of pressures and of tractions belong to one direction. Steps in other directions are refused, and the message names the right
+/// direction and a remedy.
 #[test]
 fn steps_that_go_another_way_than_the_bodies_roll_are_refused() {
     for (speed, direction, way) in [(1.5, 0.0, "towards +x"), (-1.5, PI, "towards -x")] {
@@ -114,10 +117,10 @@ fn steps_that_go_another_way_than_the_bodies_roll_are_refused() {
     }
 }
 
-/// Only the coefficients of pressures have a direction; those of tractions are even. The set-up of a handle with transient rolling is also checked. A
-/// shift has no direction.
+/// Only the coefficients of pressures belong to a direction, those of tractions are even in x. The set-up of a handle for transient rolling is
+/// checked, too. A shift has no direction.
 #[test]
-fn so_are_those_of_pressures_alone() {
+fn tables_of_pressures_alone_refuse_steps_another_way() {
     let (_, even) = coefficients(None);
     let ([ahead, _], turned_ahead) = ([1.5, -1.5].map(|speed| coefficients(Some(speed)).0), FRAC_PI_2);
     for (normal, fits, way) in [(ahead.clone(), 0.0, "towards +x"), (turned(&ahead), turned_ahead, "towards +y")] {
@@ -125,7 +128,7 @@ fn so_are_those_of_pressures_alone() {
         for motion in [Motion::SteadyRolling, Motion::TransientRolling] {
             for step in STEPS {
                 let [one, handle, alone] = case.refusals(motion, step, Motion::Shift, 0.0);
-                // Given pressures need no coefficients.
+                // The tangential problem with given pressures does not use the coefficients of pressures.
                 assert_eq!(alone, None);
                 for refusal in [one, handle] {
                     if step.0 == fits {
@@ -141,12 +144,12 @@ fn so_are_those_of_pressures_alone() {
     }
 }
 
-/// Factors of the rows of loads and displacements.
+/// The factor of a row, for loads and for displacements.
 fn of_row(row: usize) -> f64 {
     1.0 + 0.1 * (row as f64).sin()
 }
 
-/// A table of offsets as tables per loaded row, `d_i A d_j`.
+/// Row tables `d_i A d_j` from a table of offsets A and the factors d of the rows.
 fn per_row(table: &[f64]) -> Vec<f64> {
     let value = |k: usize| {
         let (jy, iy, kx) = (k / WIDTH / M, k / WIDTH % M, k % WIDTH);
@@ -155,9 +158,10 @@ fn per_row(table: &[f64]) -> Vec<f64> {
     (0..M * M * WIDTH).map(value).collect()
 }
 
-/// Row tables of pressures of bodies that relax need no symmetry, and have one direction. The result meets the conditions of contact by direct sums.
+/// Row tables of pressures for bodies that relax need not be symmetric, and belong to one direction. The result meets the conditions of contact by
+/// direct sums.
 #[test]
-fn so_are_row_tables_of_pressures() {
+fn row_tables_of_pressures_refuse_steps_another_way() {
     let (_, even) = coefficients(None);
     let case = Case::new((Vec::new(), even.map(|table| per_row(&table))));
     let (cx, _) = REACH;
@@ -184,7 +188,8 @@ fn so_are_row_tables_of_pressures() {
             };
             for (i, (p, h)) in p.iter().zip(&case.h).enumerate() {
                 let e = h - 0.3 + displaced(i);
-                // The largest h - approach is .3; the residual is an rms over some 40 elements.
+                // The residual of 1e-8 is an rms over some 40 elements relative to h - approach, which is at most .3. One element may have sqrt(40)
+                // times the rms, about 7.
                 let is_met = if *p > 0.0 { e.abs() <= 1e-8 * 0.3 * 7.0 } else { e >= -1e-8 };
                 assert!(is_met, "{i}: {e:e} {p}");
             }
@@ -194,9 +199,9 @@ fn so_are_row_tables_of_pressures() {
     }
 }
 
-/// Even coefficients allow steps in any direction.
+/// Coefficients that are even in x and y allow steps in any direction.
 #[test]
-fn even_ones_go_any_way() {
+fn even_tables_allow_steps_any_way() {
     let case = Case::new(coefficients(None));
     for step in STEPS {
         assert_eq!(case.refusals(Motion::SteadyRolling, step, Motion::SteadyRolling, 0.0), [None, None, None]);

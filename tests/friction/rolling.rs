@@ -1,4 +1,4 @@
-//! Steps of transient rolling: recomputed conditions, in any direction; a sequence that becomes steady.
+//! Transient rolling: the conditions of steps in any direction, recomputed by direct sums, and a sequence of steps that becomes steady.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
 use super::dense;
 use super::support::{residual, run, solver, tangential};
 
-/// Hertz' ellipse with semi-axes 1 and b on m x m elements.
+/// Hertz' pressures over an ellipse with semi-axes 1 and b, on m x m elements.
 fn ellipse(m: usize, b: f64) -> (Grid, Vec<f64>) {
     let grid = Grid::new(m, m, 2.2 / m as f64, 2.2 * b / m as f64).unwrap();
     let centre = 0.5 * (m as f64 - 1.0);
@@ -48,9 +48,9 @@ fn steps_in_any_direction_and_of_any_length_meet_the_conditions() {
             };
             for _ in 0..4 {
                 let (report, now) = run(&mut solver, &g, &step, 1e-6);
-                let left = residual((&grid, 0.3), &g, &step, &before.traction, (&report, &now));
-                // The tolerance, and round-off of the displacements, which are far larger than the slip.
-                assert!(left <= 1.001e-6 + 1e-9, "{direction} {length}: {left}");
+                let slip_residual = residual((&grid, 0.3), &g, &step, &before.traction, (&report, &now));
+                // The tolerance, and round-off of the displacements, which are far larger than the slip: 2e-9 is ample.
+                assert!(slip_residual <= 1.001e-6 + 1e-9, "{direction} {length}: {slip_residual}");
                 before = now;
             }
         }
@@ -77,8 +77,8 @@ fn a_long_step_of_whole_elements_takes_no_more_memory_than_a_short_one() {
         let by = step.elements_rolled(&grid);
         assert_eq!((by.0.fract(), by.0, by.1), (0.0, by.1, 3e5));
         let (report, now) = run(&mut solver, &g, &step, 1e-6);
-        let left = residual((&grid, 0.3), &g, &step, &before.traction, (&report, &now));
-        assert!(left <= 1.001e-6 + 1e-9, "{motion:?}: {left}");
+        let slip_residual = residual((&grid, 0.3), &g, &step, &before.traction, (&report, &now));
+        assert!(slip_residual <= 1.001e-6 + 1e-9, "{motion:?}: {slip_residual}");
         assert!(report.certificate.stick_count > 0 && report.certificate.slip_count > 0);
     }
 }
@@ -95,7 +95,7 @@ fn previous_tractions_may_be_given_or_kept() {
     let given = Friction { previous: Previous::Given([&x, &y]), ..step };
     let (_, of_given) = run(&mut solver(&grid, 0.3), &g, &given, 1e-8);
     assert_eq!(of_kept.traction, of_given.traction);
-    // A step from rest differs, and a new solver keeps no tractions.
+    // A step from rest has other tractions. A new solver has no tractions from which a step could continue.
     let (_, from_rest) = run(&mut solver(&grid, 0.3), &g, &step, 1e-8);
     assert_ne!(of_kept.traction, from_rest.traction);
     let continued = Friction { previous: Previous::Kept, ..step };
@@ -105,7 +105,7 @@ fn previous_tractions_may_be_given_or_kept() {
 
 #[test]
 fn a_shift_back_and_forth_remembers_where_it_was() {
-    // Mindlin and Deresiewicz: after a shift back to the beginning tractions remain. The first shift again restores the first tractions, if nothing
+    // Mindlin and Deresiewicz (1953): if a shift is taken back, tractions remain. If it is then repeated, the first tractions return, because nothing
     // has slipped farther.
     let (grid, g) = ellipse(32, 1.0);
     let to = |length: f64| Friction {
@@ -117,10 +117,10 @@ fn a_shift_back_and_forth_remembers_where_it_was() {
     let (back_report, _) = run(&mut solver, &g, &Friction { previous: Previous::Kept, ..to(0.8) }, 1e-8);
     let (again_report, again) = run(&mut solver, &g, &Friction { previous: Previous::Kept, ..to(-0.8) }, 1e-8);
     let carried: f64 = g.iter().sum::<f64>() * grid.element_area();
-    // Unloading is loading with twice the bound by half the shift: F(0) = F(-d) - 2 F(d/2).
+    // Unloading by d is loading with twice the bound by d, which is twice the force of d/2 with the plain bound: F(0) = F(-d) - 2 F(d/2).
     let (half, _) = run(&mut super::support::solver(&grid, 0.0), &g, &to(-0.4), 1e-8);
     let expected = first_report.force[0] - 2.0 * half.force[0];
-    // Both have the same discretisation, and a residual of 1e-8.
+    // Both sides have the same discretisation. The tolerances allow for a residual of 1e-8.
     assert!((back_report.force[0] - expected).abs() <= 1e-5 * carried, "{} {expected}", back_report.force[0]);
     assert!((again_report.force[0] - first_report.force[0]).abs() <= 1e-6 * carried);
     let apart = first.traction.iter().zip(&again.traction).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
@@ -145,18 +145,18 @@ fn rolling_becomes_steady() {
     }
     assert!(changes[119] <= 1e-5, "{}", changes[119]);
     assert!(products / 120.0 <= 20.0, "{}", products / 120.0);
-    // The steady problem, by direct sums: u' is that of the same tractions.
+    // The conditions of steady rolling by direct sums: the displacements one element ahead are those by the same tractions.
     let (mut here, mut there) = (vec![[0.0; 2]; grid.len()], vec![[0.0; 2]; grid.len()]);
     let tangential = tangential(&grid, nu);
     dense::apply(&tangential, &grid, (0.0, 0.0), &last.traction, &mut here);
     dense::apply(&tangential, &grid, (1.0, 0.0), &last.traction, &mut there);
-    let (mut left, mut all) = (0.0, 0.0);
+    let (mut slip_residual, mut all) = (0.0, 0.0);
     for i in (0..grid.len()).filter(|&i| g[i] > 0.0) {
         let w = step.rigid_slip_at(&grid, i);
         let s = [w[0] + here[i][0] - there[i][0], w[1] + here[i][1] - there[i][1]];
         let q = last.traction[i];
         let power = s[0] * q[0] + s[1] * q[1] + g[i] * s[0].hypot(s[1]);
-        (left, all) = (left + power, all + g[i] * w[0].hypot(w[1]));
+        (slip_residual, all) = (slip_residual + power, all + g[i] * w[0].hypot(w[1]));
     }
-    assert!(left / all <= 1e-4, "gap {}", left / all);
+    assert!(slip_residual / all <= 1e-4, "gap {}", slip_residual / all);
 }

@@ -1,5 +1,5 @@
-//! The caller's tables that are not even in x, for steady rolling of bodies that relax: beside the output of CONTACT (its example visc_cylindr;
-//! eve70a/CONTACT), direct sums, and mirrored scenes.
+//! Tables of coefficients that are not even in x, for steady rolling of bodies that relax. Compared with the output of CONTACT (its example
+//! visc_cylindr; eve70a/CONTACT), with direct sums, and with mirrored scenes.
 
 use contact_normal::error::Error;
 use contact_normal::friction::{rolling_tables, Compliance, Request, Solution, Solver, Tangential, EXTERIOR, SLIP};
@@ -12,25 +12,27 @@ use contact_normal::solver::{solve, Options, Outcome};
 use contact_normal::threads::Threads;
 use contact_normal::visco::{rolling_table, RollingBody, Series};
 
-/// The integral of f from a to b by the double exponential rule, whose error is a few units of round-off even if the slope of f at the ends is infinite.
+/// The integral of f from a to b by the double exponential rule, whose error is a few units of round-off even if the slope of f at the ends is
+/// infinite.
 fn integral(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (half, step) = (0.5 * (b - a), 0.125);
     let term = |k: i32| {
         let t = step * f64::from(k);
         let s = 0.5 * std::f64::consts::PI * t.sinh();
         let weight = 0.5 * std::f64::consts::PI * t.cosh() / s.cosh().powi(2);
-        // From the nearer end: 1 - tanh s without cancellation.
+        // The distance from the nearer end, 1 - tanh s, without cancellation.
         let from_end = (b - a) / (1.0 + (2.0 * s.abs()).exp());
         weight * f(if s < 0.0 { a + from_end } else { b - from_end })
     };
     half * step * (-26..=26).map(term).sum::<f64>()
 }
 
-/// The coefficient at offset x of a body that relaxes to half its modulus: `a(x) + W(x)`, where W is the mean of a over the earlier offsets t > x of the
-/// material, with the weight `exp(-(t - x)/L)/L`. All in elements.
+/// The coefficient at offset x of a body that relaxes to half its modulus, for the elastic coefficient a: `a(x) + W(x)`. W is the mean of a over the
+/// earlier offsets t > x of the material, with the weight `exp(-(t - x)/L)/L`. Lengths are in elements.
 fn relaxed(a: impl Fn(f64) -> f64, x: f64, length: f64) -> f64 {
     let end = x + 40.0 * length;
-    // The slope of a is infinite at the edges of the element; further panels are as long as they are far from these, and at most 2 L.
+    // The slope of a is infinite at the edges of the element, where panels begin. The other panels are as long as their distance from these edges,
+    // and at most 2 L.
     let mut edges = vec![x, end];
     edges.extend([-0.5, 0.5]);
     edges.extend((-3..40).map(|k| 2f64.powi(k)).flat_map(|d| [-0.5 - d, 0.5 + d, 0.5 - d.min(0.5)]));
@@ -42,13 +44,14 @@ fn relaxed(a: impl Fn(f64) -> f64, x: f64, length: f64) -> f64 {
     a(x) + edges.windows(2).map(panel).sum::<f64>()
 }
 
-/// xx, yy and xy of two bodies that relax alike to half their modulus, over the offsets `-cx..cx` by `-cy..cy`; L in elements, 0: relaxed.
+/// The tables xx, yy and xy of two bodies that relax alike to half their modulus, over the offsets `-cx..cx` by `-cy..cy`. `length` is L in elements;
+/// 0 means that the bodies have relaxed.
 fn tables(tangential: &Tangential, (cx, cy): (usize, usize), length: f64) -> [Vec<f64>; 3] {
     [0, 1, 2].map(|component| {
         let at = |k: usize| {
             let (x, y) = ((k % (2 * cx)) as f64 - cx as f64, (k / (2 * cx)) as f64 - cy as f64);
             let a = |x: f64| tangential.at(x, y)[component];
-            // The first row and column are not read, and xy is odd in y.
+            // The library does not read the first row and column. The coefficient xy is odd in y.
             let is_read = k % (2 * cx) > 0 && k / (2 * cx) > 0;
             match (component, length) {
                 _ if !is_read => 0.0,
@@ -66,8 +69,8 @@ fn influence(of: &[Vec<f64>; 3], (cx, cy): (usize, usize)) -> TangentialInfluenc
     TangentialInfluence { cx, cy, coefficients, cross: None, scale: 1.0, by_row: false }
 }
 
-/// Two cylinders that relax alike to half their modulus, 99 x 1 elements, at 1000 mm/s, pulled by .6 mu N. Approach, creepage and the number of sticking
-/// elements are those that CONTACT printed.
+/// Two cylinders that relax alike to half their modulus, on 99 x 1 elements, roll at 1000 mm/s under a tangential force of .6 mu N. The approach, the
+/// creepage and the number of sticking elements are those that CONTACT printed.
 #[test]
 fn cylinders_that_relax_and_roll_are_those_of_contact() {
     let (mx, dx, dy, nu, g) = (99, 0.16, 1000.0, 0.4, 1143.0);
@@ -106,14 +109,15 @@ fn cylinders_that_relax_and_roll_are_those_of_contact() {
         assert_eq!(stop, Outcome::Converged);
         let found = report.friction.unwrap();
         println!("{creep} {} {:?} {}", report.measures.approach, found.creepage, found.certificate.stick_count);
-        // To the printed digits. For the longest creep time CONTACT cuts off the tail of the displacements, some 1e-5.
+        // The tolerances are those of the printed digits. For the longest creep time CONTACT cuts off the tail of the displacements, an error of some
+        // 1e-5.
         assert!((report.measures.approach - approach).abs() <= 4e-5, "{creep}: {}", report.measures.approach);
         assert!((found.creepage[0] / creepage - 1.0).abs() <= 5.1e-4, "{creep}: {:?}", found.creepage);
         assert_eq!(found.certificate.stick_count, sticks, "{creep}");
     }
 }
 
-/// The entries that are read agree to 1e-10 of the largest.
+/// Asserts that the entries that the library reads agree to 1e-10 of the largest one.
 fn assert_near(found: &[Vec<f64>; 3], expected: &[Vec<f64>; 3], (cx, cy): (usize, usize)) {
     let largest = expected[0].iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     for k in (0..4 * cx * cy).filter(|k| k % (2 * cx) > 0 && k / (2 * cx) > 0) {
@@ -124,13 +128,13 @@ fn assert_near(found: &[Vec<f64>; 3], expected: &[Vec<f64>; 3], (cx, cy): (usize
     }
 }
 
-/// The library's tables are those of the test's own quadrature. Rolling towards -x mirrors them. Unlike bodies are refused.
+/// The library's tables equal those of the test's own quadrature. Rolling towards -x mirrors them. Unlike bodies are refused.
 #[test]
 fn tables_of_bodies_that_relax_are_those_of_quadrature() {
     let (reach, (dx, dy), nu, g) = ((9, 6), (0.5, 0.7), 0.3, 4.0);
     let tangential = Tangential::new(dx, dy, Compliance { shear: 1.0 / g, poisson: nu / g, unlike: 0.0 });
     for length in [0.05, 0.7, 3.0, 40.0] {
-        // Half of the modulus relaxes. The relaxation time is half the creep time.
+        // `part` of the modulus relaxes; if it is a half, the relaxation time is half the creep time.
         let body = |part: f64| RollingBody {
             compliance: 0.5 / g,
             series: Series::new(g, &[part * g], &[0.5 * length * dx / 10.0]).unwrap(),
@@ -151,7 +155,7 @@ fn tables_of_bodies_that_relax_are_those_of_quadrature() {
             let refused = rolling_tables(reach, (dx, dy), (&bodies, nu), 10.0).unwrap_err().to_string();
             assert!(refused.contains("unlike"), "{refused}");
         }
-        // Incompressible bodies are not unlike, however they relax: pressures do not move their surfaces sideways.
+        // Two incompressible bodies never count as unlike, however they relax, because pressures do not displace their surfaces sideways.
         assert!(rolling_tables(reach, (dx, dy), (&[body(0.5), body(0.4)], [0.5; 2]), 10.0).is_ok());
     }
 }
@@ -203,7 +207,7 @@ impl Small {
         (solver.solution().unwrap().clone(), report.creepage)
     }
 
-    /// The displacement by tractions at `x` elements beyond element i in x.
+    /// The displacement by the tractions q at the place that lies `x` elements beyond element i along x.
     fn displacement(&self, q: &[[f64; 2]], i: usize, x: i64) -> [f64; 2] {
         let ((cx, cy), mx) = (SMALL_REACH, self.grid.mx);
         let (ix, iy) = ((i % mx) as i64 + x, (i / mx) as i64);
@@ -215,10 +219,10 @@ impl Small {
         })
     }
 
-    /// The residual of the conditions of steady rolling by `by` elements along x, relative to the rms rigid slip.
-    fn left(&self, friction: &Friction<'_>, found: &Solution, (by, creepage): (i64, [f64; 2])) -> f64 {
+    /// The rms residual of the conditions of steady rolling with a step of `by` elements along x, relative to the rms rigid slip.
+    fn residual(&self, friction: &Friction<'_>, found: &Solution, (by, creepage): (i64, [f64; 2])) -> f64 {
         let moved = Friction { prescribed: creepage.map(Prescribed::Creepage), ..*friction };
-        let (mut left, mut rigid, mut slips) = (0.0, 0.0, 0);
+        let (mut squares, mut rigid, mut slips) = (0.0, 0.0, 0);
         for i in 0..self.grid.len() {
             if found.stick_slip[i] == EXTERIOR {
                 assert_eq!(found.traction[i], [0.0; 2]);
@@ -239,14 +243,15 @@ impl Small {
                 let difference = (s[k] - found.slip[i][k]).abs();
                 assert!(difference <= 1e-11, "the slip of {i}: {s:?} {:?}", found.slip[i]);
             }
-            left += rest[0].powi(2) + rest[1].powi(2);
+            squares += rest[0].powi(2) + rest[1].powi(2);
             rigid += w[0].powi(2) + w[1].powi(2);
         }
         assert!(slips > 0);
-        (left / rigid).sqrt()
+        (squares / rigid).sqrt()
     }
 }
 
+/// Steady rolling along x with given creepages and spin; mu = 0.3.
 fn rolling(creepage: [f64; 2], spin: f64) -> Friction<'static> {
     Friction {
         motion: Motion::SteadyRolling,
@@ -273,10 +278,10 @@ fn conditions_hold_by_direct_sums_and_bodies_seen_from_behind_are_the_same() {
     ] {
         let friction = Friction { rolling_distance: 0.5 * f64::from(steps), ..rolling(creepage, spin) };
         let (found, as_given) = small.solved(&friction);
-        let left = small.left(&friction, &found, (i64::from(steps), as_given));
-        // The tolerance, and round-off of direct sums.
-        assert!(left <= 1.01e-8, "{creepage:?} {spin}: {left:e}");
-        // Rolling towards -x over the mirrored bodies: x components change their signs, and so does the spin; places are mirrored.
+        let residual = small.residual(&friction, &found, (i64::from(steps), as_given));
+        // 1 % of the tolerance allows for the round-off of direct sums.
+        assert!(residual <= 1.01e-8, "{creepage:?} {spin}: {residual:e}");
+        // The mirrored bodies roll towards -x. Components in x and the spin change their signs, and places are mirrored.
         let back = Friction {
             prescribed: [Prescribed::Creepage(-creepage[0]), Prescribed::Creepage(creepage[1])],
             spin: -spin,
@@ -293,7 +298,7 @@ fn conditions_hold_by_direct_sums_and_bodies_seen_from_behind_are_the_same() {
 }
 
 #[test]
-fn forces_and_laws_go_with_them() {
+fn forces_and_laws_are_solved_with_rolling_tables() {
     let small = Small::new();
     let (carried, friction) = (0.3 * small.pressure.iter().sum::<f64>() * 0.35, rolling([0.0; 2], 1e-3));
     let pulled =
@@ -303,8 +308,9 @@ fn forces_and_laws_go_with_them() {
     assert!(
         (sums[0] + 0.5 * carried).abs() <= 1.01e-8 * carried && (sums[1] - 0.2 * carried).abs() <= 1.01e-8 * carried
     );
-    // With prescribed forces the solver's residual is relative to the displacements too, which are larger than the rigid slip.
-    assert!(small.left(&pulled, &found, (1, creepage)) <= 1e-7);
+    // With prescribed forces the solver's residual is relative to the displacements, too, which are larger than the rigid slip; hence 1e-7 instead of
+    // 1e-8.
+    assert!(small.residual(&pulled, &found, (1, creepage)) <= 1e-7);
     let law = FrictionLaw::new(Fall::Exponential, (0.1, 0.2), 100.0, 1e4);
     let (falls, _) = small.solved(&Friction { law: Some(law), ..rolling([-0.01, 0.0], 0.0) });
     let slips = (0..small.grid.len()).filter(|&i| falls.stick_slip[i] == SLIP);
@@ -315,12 +321,13 @@ fn forces_and_laws_go_with_them() {
         let q = falls.traction[i][0].hypot(falls.traction[i][1]);
         (off, count) = (off.max((q - mu * small.pressure[i]).abs()), count + 1);
     }
-    // The rms over all of them relative to mu p is below the tolerance.
+    // The rms over all elements, relative to mu p, is below the tolerance, so that one element may have the square root of their number times as
+    // much.
     assert!(count > 20 && off <= 1.01e-8 * 30.0 * (small.grid.len() as f64).sqrt(), "{count} {off:e}");
 }
 
 #[test]
-fn only_steady_rolling_takes_them_and_y_must_be_even() {
+fn only_steady_rolling_takes_rolling_tables_and_y_must_be_even() {
     let small = Small::new();
     let h = vec![0.0; small.grid.len()];
     let refused = |own: &[Vec<f64>; 3], motion: Motion| {
@@ -347,7 +354,7 @@ fn only_steady_rolling_takes_them_and_y_must_be_even() {
     }
 }
 
-/// Tables of bodies that relax suit steady rolling alone: a handle takes those of another speed, and refuses a shift with them.
+/// Tables of bodies that relax are for steady rolling only: a handle accepts those of another speed, and refuses a shift with them.
 #[test]
 fn a_handle_takes_the_tables_of_another_speed() {
     let (grid, reach) = (Grid::new(12, 8, 1.0, 1.0).unwrap(), (14, 9));

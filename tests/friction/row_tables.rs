@@ -1,4 +1,4 @@
-//! The caller's own tangential coefficients, one table per loaded row.
+//! A caller's tangential coefficients, one table per loaded row.
 
 use contact_normal::error::Error;
 use contact_normal::friction::{Solver, Tangential, Vector};
@@ -49,7 +49,7 @@ fn influence<'a>(grid: &Grid, tables: &'a [Vec<f64>; 3]) -> TangentialInfluence<
     TangentialInfluence { cx: grid.mx + BEYOND, cy: grid.my, by_row: true, coefficients, cross: None, scale: 1.0 }
 }
 
-/// Displacements term by term; yx follows from the symmetry.
+/// Displacements by direct summation. The coefficients yx follow from xy by the symmetry of A.
 fn sums(grid: &Grid, tables: &[Vec<f64>; 3], by: (f64, f64), q: &[Vector], u: &mut [Vector]) {
     let (cx, my) = ((grid.mx + BEYOND) as i64, grid.my);
     let by = by.0.round() as i64;
@@ -66,7 +66,7 @@ fn sums(grid: &Grid, tables: &[Vec<f64>; 3], by: (f64, f64), q: &[Vector], u: &m
     }
 }
 
-/// Rows that differ.
+/// A rotation and a factor that differ from row to row.
 fn uneven(row: usize) -> Row {
     (0.9 * (0.3 * row as f64).sin(), 1.0 + 0.4 * (0.2 * row as f64).cos())
 }
@@ -97,7 +97,7 @@ fn motions() -> Vec<Friction<'static>> {
 
 #[test]
 fn all_motions_meet_the_conditions_by_direct_sums() {
-    // With and without coarser grids; odd numbers of rows.
+    // The larger grid has coarser grids, the smaller one has none. The numbers of rows are odd.
     for (mx, my) in [(14, 11), (30, 25)] {
         let grid = Grid::new(mx, my, 1.0, 0.8).unwrap();
         let tables = tables(&grid, &uneven);
@@ -111,18 +111,18 @@ fn all_motions_meet_the_conditions_by_direct_sums() {
                 let (report, solution) = run(&mut solver, &pressure, &friction, 1e-6);
                 let none = vec![[0.0; 2]; grid.len()];
                 let direct = |by: (f64, f64), q: &[Vector], u: &mut [Vector]| sums(&grid, &tables, by, q, u);
-                let left = residual_by(direct, &grid, &pressure, &friction, &none, (&report, &solution));
-                // The tolerance, and round-off of two products.
-                assert!(left <= 1.001e-6, "{mx} {friction:?}: {left}");
+                let slip_residual = residual_by(direct, &grid, &pressure, &friction, &none, (&report, &solution));
+                // The tolerance of the solve, and 1e-9 for the different round-off of direct sums and FFT products.
+                assert!(slip_residual <= 1.001e-6, "{mx} {friction:?}: {slip_residual}");
                 if friction.motion == Motion::SteadyRolling {
                     continue;
                 }
-                // The next step, with a box of as many rows at another place.
+                // The next step. The contact has moved by one row, so that the box around it begins at another row, with as many rows.
                 let moved = ellipse(&grid, (x - 1.0, y + 0.7), (0.8 * x, 0.8 * y));
                 let next = Friction { previous: Previous::Kept, ..friction };
                 let (report, after) = run(&mut solver, &moved, &next, 1e-6);
-                let left = residual_by(direct, &grid, &moved, &next, &solution.traction, (&report, &after));
-                assert!(left <= 1.001e-6, "{mx} {friction:?}, the next step: {left}");
+                let slip_residual = residual_by(direct, &grid, &moved, &next, &solution.traction, (&report, &after));
+                assert!(slip_residual <= 1.001e-6, "{mx} {friction:?}, the next step: {slip_residual}");
             }
         }
     }
@@ -139,8 +139,8 @@ fn a_box_that_begins_at_another_row_has_other_tables() {
         for pressure in [&low, &high, &low] {
             let (report, solution) = run(&mut kept, pressure, &friction, 1e-8);
             let direct = |by: (f64, f64), q: &[Vector], u: &mut [Vector]| sums(&grid, &tables, by, q, u);
-            let left = residual_by(direct, &grid, pressure, &friction, &none, (&report, &solution));
-            assert!(left <= 1.001e-8, "{friction:?}: {left}");
+            let slip_residual = residual_by(direct, &grid, pressure, &friction, &none, (&report, &solution));
+            assert!(slip_residual <= 1.001e-8, "{friction:?}: {slip_residual}");
         }
     }
 }
@@ -155,7 +155,8 @@ fn equal_rows_give_what_tables_of_offsets_give() {
         let mut half_space = Solver::new(grid, tangential(&grid, NU), true, &Threads::One);
         let (_, known) = run(&mut half_space, &pressure, &friction, 1e-9);
         for (a, b) in known.traction.iter().zip(&found.traction) {
-            // The error of tractions of .3 with a residual of 1e-9 (docs/friction.md: 1e-5 for 1e-6, and it falls with the square root).
+            // Tractions are up to .3. The relative error of tractions is 1e-5 at a residual of 1e-6 (docs/friction.md), and falls with its square
+            // root: 1e-5 is ample for two solves to 1e-9.
             assert!((a[0] - b[0]).hypot(a[1] - b[1]) <= 0.3 * 1e-5, "{friction:?}: {a:?} {b:?}");
         }
     }
@@ -172,15 +173,15 @@ fn a_single_row_and_a_single_column_are_solved() {
             let (report, solution) = run(&mut own_solver(&grid, &tables), &pressure, &friction, 1e-7);
             let none = vec![[0.0; 2]; grid.len()];
             let direct = |by: (f64, f64), q: &[Vector], u: &mut [Vector]| sums(&grid, &tables, by, q, u);
-            let left = residual_by(direct, &grid, &pressure, &friction, &none, (&report, &solution));
-            assert!(left <= 1.001e-7, "{mx} x {my} {friction:?}: {left}");
+            let slip_residual = residual_by(direct, &grid, &pressure, &friction, &none, (&report, &solution));
+            assert!(slip_residual <= 1.001e-7, "{mx} x {my} {friction:?}: {slip_residual}");
         }
     }
 }
 
 #[test]
 fn threads_change_no_bit() {
-    // Four times the elements of the box around C exceed 110 x 110, below which products are not shared.
+    // Products are shared between threads if four times the elements of the box around C exceed 110 x 110, as they do here.
     let grid = Grid::new(80, 52, 1.0, 0.8).unwrap();
     let tables = tables(&grid, &uneven);
     let pressure = ellipse(&grid, (39.0, 25.0), (38.0, 24.0));
@@ -206,7 +207,7 @@ fn what_is_no_symmetric_operator_or_does_not_fit_is_refused_by_name() {
         let scene = Scene { friction: Some(friction), ..Scene::new(grid, &[], bodies, Load::Force(1.0)) };
         solve_tangential(&scene, &pressure, &Options::default(), None).err().unwrap()
     };
-    // The place of loaded row 1, row 3, offset 2.
+    // The index of loaded row 1, row 3, offset 2 in a table.
     let place = (6 + 3) * width + 8 + BEYOND + 2;
     let changed = |table: usize, at: usize, by: &dyn Fn(f64) -> f64| {
         let mut tables = good.clone();
@@ -224,7 +225,7 @@ fn what_is_no_symmetric_operator_or_does_not_fit_is_refused_by_name() {
     assert!(matches!(error, Error::NotFinite(_)) && error.to_string().contains("row_tables[2] (xy)"), "{error}");
     let error = refused(&changed(1, (6 + 1) * width + 8 + BEYOND, &|value| -value), &|_| {});
     assert!(matches!(error, Error::NotPositiveDefinite(_)) && error.to_string().contains("(jy 1, iy 1)"), "{error}");
-    // Larger than any coefficient of an element on itself, all of which are below 2.
+    // 2 is larger than any coefficient of an element on itself, so that A cannot be positive definite.
     let error = refused(&changed(2, place, &|_| 2.0), &|_| {});
     assert!(
         matches!(error, Error::NotPositiveDefinite(_)) && error.to_string().contains("(xy) of rows (jy"),
@@ -255,11 +256,11 @@ fn what_is_no_symmetric_operator_or_does_not_fit_is_refused_by_name() {
 }
 
 #[test]
-fn a_handle_keeps_them_beside_row_tables_of_pressures() {
+fn a_handle_keeps_tangential_row_tables_beside_those_of_pressures() {
     let grid = Grid::new(20, 14, 0.1, 0.1).unwrap();
     let h = paraboloid(&grid, 0.05);
     let tables = tables(&grid, &uneven);
-    // The coefficients of pressures are those of tractions in x.
+    // The influence coefficients of pressures are, in this test, those of tractions in x.
     let normal = RowTables::new(20 + BEYOND, 14, &tables[0], &grid).unwrap();
     let (half, options) =
         (tables.clone().map(|table| table.iter().map(|value| 0.5 * value).collect()), Options::default());
@@ -278,7 +279,7 @@ fn a_handle_keeps_them_beside_row_tables_of_pressures() {
     let own = scene(&half);
     let friction = own.friction.as_ref().unwrap();
     handle.set_tangential_influence(friction).unwrap();
-    // Later scenes need not name them.
+    // Later scenes need not contain the tables.
     let unnamed = Scene { friction: Some(Friction { influence: None, ..*friction }), ..own.clone() };
     let cold = Options { initial_guess: solver::InitialGuess::default(), ..options };
     handle.solve(&unnamed, &cold, None, None).unwrap();

@@ -1,4 +1,5 @@
-//! A solve without a guess, or from a given one, has the same bits on any handle, whatever it solved before, and in batches of any number of threads.
+//! A solve without a guess, or from a given one, has the same bits on any handle, whatever the handle solved before, and in a batch with any number
+//! of threads.
 
 use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Previous, Scene};
 use contact_normal::solver::{solve, Guess, InitialGuess, Method, Options, Problem, Solver};
@@ -7,7 +8,7 @@ use super::support::ball;
 
 const UNLIKE: Bodies = Bodies { shear_modulus: [1.0, 3.0], poisson_ratio: [0.1, 0.45] };
 
-/// Bits of the pressures, tractions and slips.
+/// The bits of the pressures, displacements, tractions and slips.
 fn bits(solver: &Solver) -> Vec<u64> {
     let found = solver.friction().expect("tractions");
     let fields = found.traction.iter().chain(&found.slip).flatten();
@@ -41,7 +42,7 @@ fn on_a_handle_that_solved_other_scenes() {
                 let mut new = Solver::new(&scene, &options).unwrap();
                 new.solve(&scene, &options, guess, None).unwrap();
                 let expected = bits(&new);
-                // Earlier solves of the handle: other surfaces, loads, limits and motions, and steps in time.
+                // What the handle solves before: other surfaces, loads, limits and motions, and steps in time.
                 let others = [
                     (Scene { friction: None, undeformed_distance: &rough, ..scene.clone() }, InitialGuess::None),
                     (
@@ -92,7 +93,7 @@ fn in_batches_of_any_number_of_threads() {
                 scenes.iter().map(|scene| Problem { scene: scene.clone(), guess: None }).collect();
             let found = solver.solve_batch(&problems, &options, |i, outcome, state| {
                 outcome.unwrap();
-                // A batch hands out the state, without tractions.
+                // The callback of a batch gets pressures and displacements, but no tractions.
                 assert!(state.p.iter().zip(&alone[i]).all(|(p, bits)| p.to_bits() == *bits), "{i}, {threads} threads");
                 state
                     .p
@@ -106,7 +107,7 @@ fn in_batches_of_any_number_of_threads() {
     }
 }
 
-/// A batch does not define which scene a worker solved before.
+/// A batch does not define which scene a worker has solved before, so that it refuses friction that continues from earlier tractions.
 #[test]
 fn a_batch_refuses_friction_that_continues() {
     let (grid, h) = ball(20, 0.12);
@@ -117,7 +118,7 @@ fn a_batch_refuses_friction_that_continues() {
             let continues = Scene { friction: Some(goes_on), ..scene.clone() };
             let options = Options { threads: 2, ..Options::default() };
             let mut solver = Solver::new(&scene, &options).unwrap();
-            // This gives the solver tractions to continue from; the first batch below gives its workers some.
+            // After this solve the solver itself has tractions to continue from. The first batch below leaves tractions in its workers.
             solver.solve(&scene, &options, None, None).unwrap();
             for scenes in [[&scene; 4], [&continues, &scene, &continues, &scene]] {
                 let problems: Vec<Problem<'_>> =

@@ -1,4 +1,4 @@
-//! Derivatives of the forces by creepages and spin, compared with differences; a series of steps, each from the last solution.
+//! Derivatives of the forces by creepages and spin, compared with differences; and a series of scenes, each of which starts from the last solution.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
@@ -32,7 +32,7 @@ fn derivatives_are_those_of_differences() {
             let (report, _) = run(&mut solver(&grid, NU), &g, &friction, 1e-8);
             let found = report.sensitivities.unwrap();
             let largest = found.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
-            // With so small a step hardly any element changes between stick and slip.
+            // The step of the difference is so small that hardly any element changes between stick and slip.
             let step = 1e-5;
             for by in 0..3 {
                 let mut change = [0.0; 3];
@@ -52,7 +52,7 @@ fn derivatives_are_those_of_differences() {
     }
 }
 
-/// Derivatives are 0, not 0/0, for a coefficient of 0, and by the spin about the centre of a single element.
+/// Derivatives are 0, not 0/0, for a coefficient of friction of 0, and for the spin about the centre of a single element.
 #[test]
 fn what_carries_nothing_or_moves_nothing_has_derivatives_of_zero() {
     let (disc, g) = ellipse(1.0, 16);
@@ -64,7 +64,7 @@ fn what_carries_nothing_or_moves_nothing_has_derivatives_of_zero() {
         let without = Friction { coefficient: Coefficient::Uniform(0.0), ..friction };
         let (report, _) = run(&mut solver(&disc, NU), &g, &without, 1e-8);
         assert_eq!(report.sensitivities, Some([[0.0; 3]; 3]), "{motion:?}");
-        // The element sticks: dq = -dw/A. Without an offset the slip by spin at its centre is 0.
+        // The element sticks: dq = -dw/A, with its influence A on itself. Without a spin offset the spin causes no slip at its centre.
         let centred = Friction { spin_offset: 0.0, ..friction };
         let (report, _) = run(&mut solver(&one, NU), &[1.0], &centred, 1e-8);
         let found = report.sensitivities.unwrap();
@@ -76,7 +76,7 @@ fn what_carries_nothing_or_moves_nothing_has_derivatives_of_zero() {
                     (_, Motion::TransientRolling) => -0.25 * 0.5 / own[k],
                     (_, Motion::SteadyRolling) => -0.25 * 0.5 / (own[k] - ahead[k]),
                 };
-                // The tolerance of the linear systems is 1e-5.
+                // The linear systems of derivatives are solved to 1e-5.
                 assert!((found[k][by] - expected).abs() <= 1e-5 * expected.abs(), "{motion:?}: {found:?}");
             }
         }
@@ -101,12 +101,12 @@ fn a_series_goes_on_from_the_last_solution() {
             let (b, _) = run(&mut solver(&grid, NU), &g, &friction, 1e-6);
             (products, cold) = (products + a.products, cold + b.products);
             for i in 0..2 {
-                // Twice the errors at this residual (docs/friction.md).
+                // The tolerances are twice the errors that this residual leaves (docs/friction.md).
                 assert!((a.force[i] - b.force[i]).abs() <= 1e-6 * carried, "{k}: {:?} {:?}", a.force, b.force);
                 assert!((a.creepage[i] - b.creepage[i]).abs() <= 1e-5, "{k}: {:?} {:?}", a.creepage, b.creepage);
             }
         }
-        // The last solution is a better start than that of coarse grids, without their products.
+        // The last solution is a better start than that of nested iteration, and saves the products on coarse grids.
         assert!(products < 0.9 * cold, "{products} {cold}");
     }
 }

@@ -18,7 +18,7 @@
 use contact_normal::friction::rolling_tables;
 use contact_normal::visco::{rolling_table, RollingBody, Series};
 
-/// The width of elements of length 1, the offset in elements, and the coefficients of pressures, xx, yy and xy.
+/// The width of elements whose length is 1, the offset in elements, and the coefficients: of pressures, and xx, yy and xy of tractions.
 const KNOWN: [(f64, (i32, i32), [f64; 4]); 20] = [
     (0.001, (0, 0), [0.022_071_804_347_162_86, 0.030_537_490_574_038_935, 0.023_065_462_840_499_446, 0.0]),
     (
@@ -91,7 +91,7 @@ fn coefficients_of_slender_elements_are_right_to_all_digits() {
         let [xx, yy, xy] = rolling_tables(reach, (1.0, dy), (&bodies(0.5), [0.3; 2]), 1.0).unwrap();
         for (found, known) in [normal[k], xx[k], yy[k], xy[k]].into_iter().zip(known) {
             worst = worst.max((found - known).abs() / known.abs().max(f64::MIN_POSITIVE));
-            // Differences of terms up to some ten times as large, each with some units of round-off.
+            // Coefficients are differences of terms that are up to some ten times as large, each with some units of round-off.
             assert!((found - known).abs() <= 1e-13 * known.abs(), "{dy} ({kx}, {ky}): {found} {known}");
         }
     }

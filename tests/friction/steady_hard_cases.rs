@@ -1,4 +1,4 @@
-//! Hard cases of steady rolling: extreme creepages and forces, gaps, one row, many patches; cancelled at any callback.
+//! Hard cases of steady rolling: extreme creepages and forces, gaps in the contact, a single row, many patches, and cancellation at any callback.
 
 use std::f64::consts::PI;
 
@@ -26,8 +26,8 @@ fn any_force_below_mu_n_is_reached_whatever_the_spin() {
         for part in [0.0, 0.9, 0.99, 0.999, 0.99999] {
             let friction = with_forces([-0.8 * part, 0.6 * part], spin, &g, &grid);
             let found = run(&mut solver(&grid, NU), &g, &friction, 1e-6);
-            let left = residual((&grid, NU), &g, &friction, &[], (&found.0, &found.1));
-            assert!(left <= 1.001e-6 || (part, spin) == (0.0, 0.0), "{spin} {part}: {left}");
+            let slip_residual = residual((&grid, NU), &g, &friction, &[], (&found.0, &found.1));
+            assert!(slip_residual <= 1.001e-6 || (part, spin) == (0.0, 0.0), "{spin} {part}: {slip_residual}");
             let apart = (found.0.force[0] + 0.8 * part * carried).hypot(found.0.force[1] - 0.6 * part * carried);
             assert!(apart <= 1e-6 * carried, "{spin} {part}: {:?}", found.0.force);
         }
@@ -38,7 +38,7 @@ fn any_force_below_mu_n_is_reached_whatever_the_spin() {
     }
 }
 
-/// Motions and forces of all sizes.
+/// Creepages, spins and forces from 1e-12 to full slip and beyond, with names.
 fn extremes(grid: &Grid, g: &[f64]) -> [(&'static str, Friction<'static>); 12] {
     [
         ("partial slip", rolling([-0.3, 0.2], 0.2)),
@@ -83,8 +83,8 @@ fn hard_cases_of_steady_rolling_have_their_answers() {
             for &direction in directions {
                 let friction = Friction { rolling_direction: direction.to_radians(), ..friction };
                 let (report, solution) = run(&mut solver(grid, NU), g, &friction, 1e-6);
-                let left = residual((grid, NU), g, &friction, &[], (&report, &solution));
-                assert!(left <= 1.001e-6, "{name}, {what}, {direction}: {left}");
+                let slip_residual = residual((grid, NU), g, &friction, &[], (&report, &solution));
+                assert!(slip_residual <= 1.001e-6, "{name}, {what}, {direction}: {slip_residual}");
                 assert_eq!(
                     report.certificate.stick_count + report.certificate.slip_count,
                     in_contact,
@@ -99,7 +99,7 @@ fn hard_cases_of_steady_rolling_have_their_answers() {
                 }
             }
         }
-        // Free rolling: nothing moves.
+        // Free rolling: without creepage or force there are no tractions.
         for friction in [rolling([0.0; 2], 0.0), with_forces([0.0; 2], 0.0, g, grid)] {
             let (report, solution) = run(&mut solver(grid, NU), g, &friction, 1e-6);
             assert!(solution.traction.iter().all(|q| *q == [0.0; 2]) && report.creepage == [0.0; 2], "{name}");
@@ -107,7 +107,7 @@ fn hard_cases_of_steady_rolling_have_their_answers() {
     }
 }
 
-/// The slip by the creepage is smaller by many orders than the slip by the force.
+/// A creepage and a force are given. The slip by the creepage is smaller by many orders than the slip by the force.
 #[test]
 fn a_force_beside_a_creepage_of_another_order_is_met() {
     let (grid, g) = disc(12, |_, _| true);
@@ -118,16 +118,17 @@ fn a_force_beside_a_creepage_of_another_order_is_met() {
                 let prescribed = [Prescribed::Creepage(-creepage), Prescribed::Force(part * carried)];
                 let friction = Friction { motion, prescribed, ..Friction::new(1.0) };
                 let (report, solution) = run(&mut solver(&grid, NU), &g, &friction, 1e-6);
-                let left = residual((&grid, NU), &g, &friction, &vec![[0.0; 2]; grid.len()], (&report, &solution));
-                assert!(left <= 1.001e-6, "{motion:?}, {creepage}, {part}: {left}");
+                let slip_residual =
+                    residual((&grid, NU), &g, &friction, &vec![[0.0; 2]; grid.len()], (&report, &solution));
+                assert!(slip_residual <= 1.001e-6, "{motion:?}, {creepage}, {part}: {slip_residual}");
                 assert!((report.force[1] - part * carried).abs() <= 1e-6 * carried, "{motion:?}, {creepage}, {part}");
             }
         }
     }
 }
 
-/// On one element a step along x does not couple the directions. The slip in x is that of the given creepage, however large the creepages in y are
-/// that are tried for the force.
+/// On a single element, a step along x does not couple the directions. The slip in x is that of the given creepage, however large the trial creepages
+/// in y are in the search for the given force.
 #[test]
 fn a_given_creepage_is_as_it_is_beside_a_force() {
     let (grid, g) = disc(24, |x, y| (x, y) == (9, 9));
@@ -143,7 +144,7 @@ fn a_given_creepage_is_as_it_is_beside_a_force() {
             dense::apply(&tangential(&grid, NU), &grid, (1.0, 0.0), &solution.traction, &mut ahead);
             let rigid = friction.distance(&grid) * creepage;
             let (displaced, slip) = (here[k][0] - ahead[k][0], solution.slip[k][0]);
-            // Sums of one term.
+            // The displacements are sums of one term, so that the only difference is round-off.
             let apart = (slip - (rigid + displaced)).abs();
             assert!(
                 apart <= 1e-14 * rigid.abs().max(displaced.abs()),
@@ -153,8 +154,8 @@ fn a_given_creepage_is_as_it_is_beside_a_force() {
     }
 }
 
-/// Elements four times as long as wide, and a step of a quarter of one: the preconditioner is far from the operator, which is hardly
-/// positive definite at the first Poisson ratio and not at the second.
+/// Elements are four times as long as wide, and a step is a quarter of an element. The preconditioner is then far from the operator, which is hardly
+/// positive definite at the first Poisson ratio and indefinite at the second.
 #[test]
 fn short_steps_on_long_elements_are_solved() {
     for (nu, creepage) in [(0.2, [3e-2, -2e-2]), (0.3, [3e-2, -2e-2]), (0.2, [0.2, 0.1])] {
@@ -167,20 +168,21 @@ fn short_steps_on_long_elements_are_solved() {
             .collect();
         let (rolling_distance, rolling_direction) = (0.25, PI / 2.0);
         let friction = Friction { rolling_distance, rolling_direction, ..rolling(creepage, 0.0) };
-        // One of them takes more than the 1000 products that are allowed by default.
+        // One of the cases takes more than the 1000 products that are allowed by default.
         let request = Request { limit: 20_000, ..Request::new(&g, &friction, 1e-6) };
         let mut solver = solver(&grid, nu);
         let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
         assert_eq!(end, Outcome::Converged, "{nu} {creepage:?} {report:?}");
         let found = (report, solver.solution().unwrap().clone());
-        let left = residual((&grid, nu), &g, &friction, &[], (&found.0, &found.1));
-        assert!(left <= 1.001e-6, "{nu} {creepage:?}: {left}");
+        let slip_residual = residual((&grid, nu), &g, &friction, &[], (&found.0, &found.1));
+        assert!(slip_residual <= 1.001e-6, "{nu} {creepage:?}: {slip_residual}");
     }
 }
 
 #[test]
 fn one_element_rolls_in_any_direction_with_any_creepage() {
-    // If it slips, the step has one unknown, and the first direction solves it to round-off: there is no further direction.
+    // If the element slips, a Newton step has one unknown. The first search direction solves for it to round-off, and there must be no further
+    // direction.
     let grid = Grid::new(1, 1, 7e-4, 7e-4).unwrap();
     for (nu, g) in [(0.0, 3.1e-6), (0.1, 3.1e-6), (0.28, 3e-4), (0.47, 3.1e-6)] {
         for k in 0..200 {
@@ -188,8 +190,8 @@ fn one_element_rolls_in_any_direction_with_any_creepage() {
             let (xi, eta) = (2e-5 * (0.7 * f64::from(k)).cos(), 2e-5 * (0.7 * f64::from(k)).sin());
             let step = Friction { rolling_direction: angle, ..rolling([xi, eta], 1e-3) };
             let (report, found) = run(&mut solver(&grid, nu), &[g], &step, 1e-6);
-            let left = residual((&grid, nu), &[g], &step, &[], (&report, &found));
-            assert!(left <= 1.001e-6, "{nu} {k}: {left} {:?}", found.traction);
+            let slip_residual = residual((&grid, nu), &[g], &step, &[], (&report, &found));
+            assert!(slip_residual <= 1.001e-6, "{nu} {k}: {slip_residual} {:?}", found.traction);
         }
     }
 }
@@ -206,13 +208,14 @@ fn any_start_leads_to_the_same_solution() {
         let from = Friction { previous: Previous::Given([&x, &y]), ..friction };
         let (_, found) = run(&mut solver(&grid, NU), &g, &from, 1e-9);
         let apart = found.traction.iter().zip(&expected.traction).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
-        // Both to a residual of 1e-9, which is the error of q (docs/friction.md), in the largest of some elements.
+        // Both solves have a residual of 1e-9, which is about the relative error of q (docs/friction.md) in the rms; a single element may have a much
+        // larger error.
         assert!(apart.fold(0.0, f64::max) <= 1e-7);
     }
 }
 
 #[test]
-fn cancelled_at_any_callback_it_leaves_feasible_tractions() {
+fn steady_rolling_cancelled_at_any_callback_leaves_feasible_tractions() {
     let (grid, g) = ellipse(1.0, 40);
     for friction in [rolling([-0.4, 0.1], 0.3), with_forces([0.6, 0.2], 0.3, &g, &grid)] {
         assert_eq!(friction.motion, Motion::SteadyRolling);
@@ -229,8 +232,11 @@ fn cancelled_at_any_callback_it_leaves_feasible_tractions() {
                 .unwrap();
             let solution = solver.solution().unwrap();
             assert!(solution.traction.iter().zip(&g).all(|(q, g)| q[0].hypot(q[1]) <= *g), "{cancel}");
-            let left = residual((&grid, NU), &g, &friction, &[], (&report, solution));
-            assert!((left - report.certificate.residual).abs() <= 1e-9 * (1.0 + left), "{cancel}: {left} {report:?}");
+            let slip_residual = residual((&grid, NU), &g, &friction, &[], (&report, solution));
+            assert!(
+                (slip_residual - report.certificate.residual).abs() <= 1e-9 * (1.0 + slip_residual),
+                "{cancel}: {slip_residual} {report:?}"
+            );
             if end == Outcome::Converged {
                 break;
             }

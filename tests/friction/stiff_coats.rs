@@ -1,5 +1,6 @@
-//! Steady rolling of bodies with thin coatings much stiffer than the substrate: membranes. Their coefficients reach beyond half a period, so that the inverse
-//! of a circulant of coefficients is a poor preconditioner: up to three times the products. One of wave responses is as good as for other bodies.
+//! Steady rolling of bodies with thin coatings that are much stiffer than the substrate, like membranes. Their influence reaches beyond half a period
+//! of the circulant, so that the inverse of a circulant of coefficients is a poor preconditioner: it takes up to three times the products. The
+//! library uses a circulant of responses to waves, which is as good as for other bodies.
 
 use contact_normal::friction::{Solver, Vector};
 use contact_normal::grid::Grid;
@@ -21,8 +22,8 @@ fn steady(creepage: Vector, spin: f64, coefficient: f64) -> Friction<'static> {
     }
 }
 
-/// The conditions hold by direct sums: for layers thinner than an element and 1e2 to 1e4 times as stiff as the substrate, from nearly full stick to nearly
-/// full slip.
+/// The conditions hold by direct sums for layers that are thinner than an element and 1e2 to 1e4 times as stiff as the substrate, from nearly full
+/// stick to nearly full slip.
 #[test]
 fn membranes_meet_the_conditions() {
     let ((grid, g), mut sides, mut most) = (ellipse(0.8, 26), [0usize; 2], 0.0f64);
@@ -30,27 +31,27 @@ fn membranes_meet_the_conditions() {
     for (thickness, mu, nu) in [(0.05, 1e2, [0.3, 0.4]), (0.2, 1e3, [0.45, 0.2]), (0.6, 1e4, [0.0, 0.5])] {
         let coated = coated(&grid, thickness * grid.dx, mu, nu);
         for (part, spin) in [(1e-4, 0.0), (1e-3, 3e-4), (1e-2, 0.0), (0.1, 0.1)] {
-            // In proportion to the compliance of the substrate, which is `mu` times that of the layer.
+            // Creepages are proportional to the compliance of the substrate, which is `mu` times that of the layer.
             let friction = steady([-part * mu, 0.4 * part * mu], spin * mu, 0.4);
             let mut solver = Solver::new(grid, coated.clone(), true, &Threads::One);
             let (report, solution) = run(&mut solver, &g, &friction, 1e-7);
             let sums = |by: (f64, f64), q: &[Vector], u: &mut [Vector]| dense::apply(&coated, &grid, by, q, u);
-            let left = residual_by(sums, &grid, &g, &friction, &none, (&report, &solution));
+            let slip_residual = residual_by(sums, &grid, &g, &friction, &none, (&report, &solution));
             let certificate = report.certificate;
-            println!("{thickness} {mu} {part}: {left:e} {certificate:?} products {}", report.products);
-            assert!(left <= 1.01e-7, "{thickness} {mu} {friction:?}: {left:e}");
+            println!("{thickness} {mu} {part}: {slip_residual:e} {certificate:?} products {}", report.products);
+            assert!(slip_residual <= 1.01e-7, "{thickness} {mu} {friction:?}: {slip_residual:e}");
             sides = [sides[0].max(certificate.stick_count), sides[1].max(certificate.slip_count)];
             most = most.max(report.products);
         }
     }
-    // The contact has 440 elements.
+    // The contact has 440 elements, of which in all cases together many stick and many slip.
     assert!(sides.iter().all(|count| *count > 300), "{sides:?}");
     println!("most products {most}");
     assert!(most <= 60.0, "{most} products");
 }
 
-/// For such coatings the preconditioner is far from an inverse. Certificates are taken after the step onto the circles alone: a part of the preconditioned
-/// residual would make the residual four times as large.
+/// For such coatings the preconditioner is far from an inverse. The certificate is that of the tractions after the projection onto the circles |q| <=
+/// mu p. A further step by a part of the preconditioned residual would make the residual four times as large.
 #[test]
 fn tolerances_below_single_precision_are_reached() {
     let (m, layer) = (33, CoatingLayer { thickness: 0.2, shear_modulus: 1e3, poisson_ratio: 0.3 });

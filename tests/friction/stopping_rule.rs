@@ -1,8 +1,9 @@
-//! Why single last digits of CONTACT's forces differ: its stopping rule, in a loop of solves of this library.
+//! Why the last digits of some of CONTACT's forces differ from those of the library: the stopping rule of CONTACT's outer iteration, here in a loop
+//! of solves of the library.
 //!
-//! CONTACT solves Coulomb's problem with the coefficients of the last slip velocities, beginning with 0 (INISLP = 1) or the speed (-1), until they
-//! change by less than a thousandth (rms over C). A rising coefficient is reduced by a tenth of its change (OMGSLP = 1.1), and by less if elements
-//! change between stick and slip for long.
+//! CONTACT solves Coulomb's problem with coefficients that belong to the last slip velocities, and repeats this until the velocities change by less
+//! than a thousandth (rms over C). It begins with velocities of 0 (INISLP = 1) or the speed (-1). A rising coefficient is reduced by a tenth of its
+//! change (OMGSLP = 1.1), and by less if elements change between stick and slip for long.
 
 use contact_normal::friction::{Request, Solution, SLIP, STICK};
 use contact_normal::scene::{Branch, Coefficient, Friction, FrictionLaw, Motion, Prescribed, Previous};
@@ -11,27 +12,28 @@ use contact_normal::solver::Outcome;
 use super::branches::{part, Cylinder, FALLS, PRINTED, ROLLING, STEP};
 use super::laws::{solver, Wheel, FORCE, RUNNING};
 
-/// The parameters of the rule.
+/// The parameters of the rule: the change of slip velocities at which the iteration ends, the relaxation factor, its smaller value, and the number of
+/// iterations after which it is used.
 const CHANGES: f64 = 1e-3;
 const RELAXATION: f64 = 1.1;
 const LESS: f64 = 0.8;
 const LONG: usize = 20;
 
-/// Outer iterations that CONTACT printed for cases 4 to 53 of veldep_fric.
+/// The numbers of outer iterations that CONTACT printed for cases 4 to 53 of veldep_fric.
 const TURNS: [usize; 50] = [
     11, 6, 8, 11, 16, 23, 41, 15, 6, 9, 12, 17, 29, 16, 6, 9, 12, 18, 32, 15, 6, 9, 12, 18, 30, 18, 7, 9, 12, 18, 33,
     16, 6, 9, 12, 17, 30, 13, 6, 9, 12, 17, 27, 23, 6, 9, 13, 19, 43, 13,
 ];
 
-/// The result of the loop: tractions, coefficients, and the number of outer iterations.
+/// The result of the loop: the solution, the coefficients of friction, and the number of outer iterations (turns).
 struct Ended {
     solution: Solution,
     mu: Vec<f64>,
     turns: usize,
 }
 
-/// `coefficients`: those of slip velocities v, and those of the particles before; `solve`: the tractions for coefficients; `duration`: that of a
-/// step.
+/// The outer iteration, from slip velocities v. `duration`: that of a step. `coefficients`: the coefficients for slip velocities, and those of the
+/// particles before the step. `solve`: the solution of Coulomb's problem with given coefficients.
 fn in_turns(
     (mut v, duration): (Vec<f64>, f64),
     coefficients: impl Fn(&[f64]) -> (Vec<f64>, Vec<f64>),
@@ -59,13 +61,13 @@ fn in_turns(
     unreachable!("a loop that ends")
 }
 
-/// The coefficients of the elements upstream in a row, `fresh` at the leading edge.
+/// The coefficient of the next element upstream in a row; `fresh` at the leading edge.
 fn upstream(mu: &[f64], fresh: f64) -> Vec<f64> {
     (0..mu.len()).map(|i| mu.get(i + 1).copied().unwrap_or(fresh)).collect()
 }
 
-/// The sawtooth of stick and slip by the rule: most steps take as many turns as CONTACT printed, and the errors of forces are those of the printed
-/// ones.
+/// The sawtooth of stick and slip (branches.rs) with CONTACT's stopping rule: most steps take as many turns as CONTACT printed, and forces have the
+/// errors of the printed ones.
 #[test]
 fn the_rule_moves_forces_by_what_differs() {
     let cylinder = Cylinder::new();
@@ -114,15 +116,15 @@ fn the_rule_moves_forces_by_what_differs() {
     println!(
         "by the rule {most:.1e}, beyond the digits {beyond:.1e}, turns as printed {as_printed}, digits {with_more}"
     );
-    // Steps in which two elements slip take two more turns.
+    // Most steps take the printed number of turns; those in which two elements slip take two more.
     assert!(as_printed >= 40, "{as_printed} of 50");
     assert!(beyond <= most, "{beyond:e} {most:e}");
-    // The forces have a common difference of 1.5e-5, by CONTACT's pressures or by the first state.
+    // The forces have a common difference of 1.5e-5, caused by CONTACT's pressures or by the state before the first step.
     assert!(with_more >= 49, "{with_more} of 50");
 }
 
-/// A wheel in full slip at a creepage of .05: the force is within 2e-6 of the printed digit, and the rule has errors of 3e-5, from below and from
-/// above.
+/// A wheel in full slip at a creepage of .05. The library's force is within 2e-6 of the printed digits. With CONTACT's stopping rule it has errors of
+/// 3e-5, whether from below or from above.
 #[test]
 fn the_rule_leaves_more_than_a_wheels_digit() {
     let wheel = Wheel::new(1);

@@ -1,4 +1,4 @@
-//! Tangential problems with given pressures, and their conditions recomputed by direct sums.
+//! Solves tangential problems with given pressures, and recomputes the conditions of friction by direct sums.
 
 use contact_normal::friction::{Compliance, Report, Request, Solution, Solver, Tangential, Vector, SLIP, STICK};
 use contact_normal::grid::Grid;
@@ -8,7 +8,7 @@ use contact_normal::threads::Threads;
 
 use super::dense;
 
-/// The distance of a ball of radius 50 from a plane, on m x m elements of side d.
+/// The undeformed distance between a ball of radius 50 and a plane, on m x m elements of side d.
 pub fn ball(m: usize, d: f64) -> (Grid, Vec<f64>) {
     let centre = 0.5 * (m as f64 - 1.0);
     let h = (0..m * m)
@@ -17,7 +17,7 @@ pub fn ball(m: usize, d: f64) -> (Grid, Vec<f64>) {
     (Grid::new(m, m, d, d).unwrap(), h)
 }
 
-/// The coefficients for `1/G = 1`.
+/// The tangential coefficients for `1/G = 1`.
 pub fn tangential(grid: &Grid, nu: f64) -> Tangential {
     Tangential::new(grid.dx, grid.dy, Compliance { shear: 1.0, poisson: nu, unlike: 0.0 })
 }
@@ -27,7 +27,7 @@ pub fn solver(grid: &Grid, nu: f64) -> Solver {
     Solver::new(*grid, tangential(grid, nu), true, &Threads::One)
 }
 
-/// Solves; the result must have converged to the tolerance.
+/// Solves, and asserts that the result has converged to the tolerance.
 pub fn run(solver: &mut Solver, g: &[f64], friction: &Friction<'_>, tolerance: f64) -> (Report, Solution) {
     let request = Request::new(g, friction, tolerance);
     let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
@@ -44,7 +44,7 @@ fn rms(values: impl Iterator<Item = f64>, count: usize) -> f64 {
     (values.map(|v| v * v).sum::<f64>() / count as f64).sqrt()
 }
 
-/// Adds the displacements of a layer by tractions, which are interpolated between the centres, at places `by` elements from each centre.
+/// Adds the displacements of an elastic layer at places `by` elements from each centre. The tractions are interpolated between the centres.
 fn add_layer(grid: &Grid, friction: &Friction<'_>, by: (f64, f64), q: &[Vector], u: &mut [Vector]) {
     for (i, u) in u.iter_mut().enumerate() {
         let (x, y) = ((i % grid.mx) as f64 + by.0, (i / grid.mx) as f64 + by.1);
@@ -58,8 +58,8 @@ fn add_layer(grid: &Grid, friction: &Friction<'_>, by: (f64, f64), q: &[Vector],
     }
 }
 
-/// The conditions of friction by direct sums: asserts `|q| <= mu p` to the last bit and the reported gap, and returns the relative residual of the
-/// slip.
+/// Recomputes the conditions of friction by direct sums. Asserts that `|q| <= mu p` to the last bit, and that the reported gap is right. Returns the
+/// residual of the slip, relative as in the library. `before`: the previous tractions.
 pub fn residual(
     (grid, nu): (&Grid, f64),
     g: &[f64],
@@ -95,7 +95,7 @@ pub fn residual_by(
     sums(by, before, &mut u_before);
     add_layer(grid, friction, (0.0, 0.0), q, &mut u);
     add_layer(grid, friction, by, before, &mut u_before);
-    let (mut left, mut rigid, mut displaced, mut count) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    let (mut residuals, mut rigid, mut displaced, mut count) = (Vec::new(), Vec::new(), Vec::new(), 0);
     let (mut gap, mut work, mut rounding) = (0.0, 0.0, 0.0);
     for i in 0..n {
         let Coefficient::Uniform(mu) = friction.coefficient else { panic!("one coefficient") };
@@ -107,7 +107,7 @@ pub fn residual_by(
         }
         count += 1;
         let mut w = friction.rigid_slip_at(grid, i);
-        // For given forces the creepage is that of the report.
+        // For a given force the creepage is unknown beforehand, and taken from the report.
         let weight = friction.weight_at(i);
         for (k, w) in w.iter_mut().enumerate() {
             if let Prescribed::Force(_) = friction.prescribed[k] {
@@ -125,9 +125,9 @@ pub fn residual_by(
         }
         gap += s[0] * q[i][0] + s[1] * q[i][1] + bound * length(s);
         work += bound * length(w);
-        // Round-off of coefficients, transforms and sums.
+        // The sums of the test and the library's products differ by the round-off of coefficients, transforms and sums, 1e-12 of their terms.
         rounding += 1e-12 * bound * (length(w) + length(u[i]) + length(u_before[i]));
-        left.push(length(rest));
+        residuals.push(length(rest));
         rigid.push(length(w));
         displaced.push(length(if is_steady { [u[i][0] - u_before[i][0], u[i][1] - u_before[i][1]] } else { u[i] }));
     }
@@ -142,5 +142,5 @@ pub fn residual_by(
         Motion::Shift | Motion::SteadyRolling => rms(rigid.into_iter(), count).max(rms(displaced.into_iter(), count)),
         _ => rms(rigid.into_iter(), count),
     };
-    rms(left.into_iter(), count) / scale
+    rms(residuals.into_iter(), count) / scale
 }

@@ -1,5 +1,5 @@
-//! The caller's tangential coefficients. Tables with the coefficients of the half-space give its results. Invalid tables are refused
-//! by name.
+//! A caller's tables of tangential coefficients. Tables with the coefficients of the half-space give its results. Invalid tables are refused with a
+//! message that names them.
 
 use std::f64::consts::PI;
 
@@ -24,7 +24,7 @@ fn ball(mx: usize, my: usize) -> (Grid, Vec<f64>) {
     (grid, distance(&grid, |x, y| (x * x + y * y) / 100.0))
 }
 
-/// Three tables, divided by `scale`, which is a power of two.
+/// The tables xx, yy and xy of the steel half-space, divided by `scale`, a power of two.
 fn tables(grid: &Grid, scale: f64) -> [Vec<f64>; 3] {
     tables_of(&STEEL, grid, scale)
 }
@@ -69,7 +69,7 @@ fn solved<'a>(scene: &Scene<'a>, own: Option<TangentialInfluence<'a>>, tolerance
 
 #[test]
 fn tables_of_the_half_space_give_what_the_half_space_gives() {
-    // Without coarser grids every number is the same. With them only the coefficients of coarser grids differ.
+    // On a grid without coarser grids every number is the same. Otherwise only the coefficients on the coarser grids differ.
     for (m, most) in [(20, 0.0), (48, 1e-5)] {
         let (grid, h) = ball(m, m - 2);
         let scene = Scene::new(grid, &h, STEEL, Load::Force(900.0));
@@ -81,7 +81,7 @@ fn tables_of_the_half_space_give_what_the_half_space_gives() {
                 let largest = known.traction.iter().map(|q| q[0].hypot(q[1])).fold(0.0, f64::max);
                 for (a, b) in known.traction.iter().zip(&found.traction) {
                     let off = (a[0] - b[0]).hypot(a[1] - b[1]);
-                    // The error of tractions with a residual of 1e-8 (docs/friction.md: 1e-5 at 1e-6, and it falls with the square root).
+                    // The error of tractions with a residual of 1e-8: docs/friction.md has 1e-5 at 1e-6, and the error falls with the square root.
                     assert!(off <= most * largest, "{m}: {off:e} of {largest}");
                 }
             }
@@ -107,15 +107,16 @@ fn own_coefficients_of_both_problems_need_no_bodies() {
     let (known, ..) = solve(&scene(STEEL, false), &options).unwrap();
     let (found, ..) = solve(&scene(none, true), &options).unwrap();
     for (a, b) in known.friction().unwrap().traction.iter().zip(&found.friction().unwrap().traction) {
-        // Pressures of two kernels of the same coefficients, each to a residual of 1e-8.
+        // The pressures, too, are those of two kernels with the same coefficients, each to a residual of 1e-8. The tolerance is 1e-5 of tractions of
+        // mu N over some hundred elements.
         assert!((a[0] - b[0]).hypot(a[1] - b[1]) <= 1e-5 * 0.3 * 900.0 / grid.element_area() / 100.0, "{a:?} {b:?}");
     }
 }
 
-/// Steel on something soft.
+/// Steel on a body that is eight times softer.
 const UNLIKE: Bodies = Bodies { shear_modulus: [82000.0, 10000.0], poisson_ratio: [0.28, 0.2] };
 
-/// Axz and Ayz of the half-space.
+/// The tables Axz and Ayz of unlike half-spaces.
 fn cross_tables(grid: &Grid) -> [Vec<f64>; 2] {
     let unlike = Compliance::of(&UNLIKE).unlike;
     let (cx, cy) = ((grid.mx + BEYOND) as i64, (grid.my + BEYOND) as i64);
@@ -134,10 +135,10 @@ fn tables_of_unlike_half_spaces_give_what_these_give() {
     let known = solved(&scene, None, 1e-8);
     let found = solved(&scene, Some(own), 1e-8);
     for (known, found) in known.iter().zip(&found) {
-        // The same numbers in the same order.
+        // The same coefficients are used in the same order, so that the bits are equal.
         assert_eq!(known.traction, found.traction);
     }
-    // Without the coupling the tractions differ.
+    // Without the coupling of pressures and tractions the result differs.
     let like = solved(&Scene { bodies: STEEL, ..scene.clone() }, Some(influence(&grid, &tables, 1.0)), 1e-8);
     assert_ne!(like[0].traction, found[0].traction);
     let (mut even, good) = (xz.clone(), &yz);
@@ -154,7 +155,7 @@ fn tables_of_unlike_half_spaces_give_what_these_give() {
 }
 
 #[test]
-fn a_handle_refuses_other_tables_until_it_is_given_them() {
+fn a_handle_refuses_other_tables_until_they_are_set() {
     let (grid, h) = ball(20, 18);
     let (tables, half) = (tables(&grid, 1.0), tables(&grid, 2.0));
     let scene = |tables| Scene {
@@ -173,7 +174,7 @@ fn a_handle_refuses_other_tables_until_it_is_given_them() {
     let traction = |solver: &Solver| solver.friction().unwrap().traction.clone();
     let off = |a: &[[f64; 2]], b: &[[f64; 2]]| a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).abs()).fold(0.0, f64::max);
     let largest = traction(&fresh).iter().map(|q| q[0].abs()).fold(0.0, f64::max);
-    // A warm start changes the pressures within their tolerance.
+    // A start from the last result changes the pressures within their tolerance.
     assert!(off(&traction(&handle), &traction(&fresh)) <= 1e-3 * largest);
     assert!(off(&traction(&first), &traction(&fresh)) > 1e-2 * largest, "the tables do not matter here");
 }
@@ -231,13 +232,14 @@ fn tables_that_are_none_are_refused_by_name() {
     refused(of(&good, &as_it_is, pushed(), unlike), "unlike bodies");
 }
 
-/// A normal problem with row tables or a coating has the pressures of the scene without friction. The tractions are those of these pressures.
+/// The normal problem has row tables or a coating, and the tangential problem has tables. The pressures are those of the scene without friction, and
+/// the tractions those that belong to these pressures.
 #[test]
 fn own_coefficients_go_with_row_tables_and_coatings() {
     let (grid, h) = ball(20, 18);
     let tables = tables(&grid, 1.0);
     let own = Some(influence(&grid, &tables, 1.0));
-    // Each row is 1 % softer than the one before, which a table of offsets cannot describe.
+    // Each row is softer than the one before by .5 % as a load and by .5 % as a place, which a table of offsets cannot describe.
     let half_space = HalfSpace::new(grid.dx, grid.dy, STEEL.compliance());
     let value = |k: usize| {
         let (x, iy, jy) = ((k % 40) as i64 - 20, (k / 40 % 18) as i64, (k / 720) as i64);
@@ -256,7 +258,7 @@ fn own_coefficients_go_with_row_tables_and_coatings() {
         let (found, stop, _) = solve(&Scene { friction: Some(friction), ..scene.clone() }, &options).unwrap();
         assert_eq!(stop, Outcome::Converged);
         assert_eq!(found.state().p, normal.state().p);
-        // The half-space's tractions of these pressures: the tables are its coefficients.
+        // The expected tractions are those of the half-space with these pressures, because the tables have its coefficients.
         let alone = Scene { friction: Some(pushed()), ..plain.clone() };
         let (stop, expected, _) = solve_tangential(&alone, &normal.state().p, &options, None).unwrap();
         assert_eq!(stop, Outcome::Converged);
@@ -281,7 +283,8 @@ fn coefficients_larger_than_those_of_an_element_on_itself_are_refused() {
         }
     };
     let (cx, cy) = (grid.mx + BEYOND, grid.my + BEYOND);
-    // Offset (0, 0) is the first value, as FFTs need it. Without Poisson's ratio xy is 0, and xx and yy are symmetric in this layout, too.
+    // A wrong layout: offset (0, 0) is the first value, as in an FFT. Without Poisson's ratio xy is 0, and xx and yy are symmetric in this layout,
+    // too, so that only their sizes show the mistake.
     let mut first = tables_of(&Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.0; 2] }, &grid, 1.0);
     for table in &mut first {
         let centred = table.clone();
@@ -290,7 +293,7 @@ fn coefficients_larger_than_those_of_an_element_on_itself_are_refused() {
         }
     }
     assert!(refusal(influence(&grid, &first, 1.0)).contains("(xx)"));
-    // One table whose coefficients at neighbours are too large by 1 %.
+    // One table has coefficients at neighbouring elements that are 1 % too large.
     for (component, place) in [(0, (1, 0)), (1, (0, 1)), (2, (1, 1))] {
         let mut changed = tables(&grid, 1.0);
         let own = changed[component.min(1)][cy * 2 * cx + cx];

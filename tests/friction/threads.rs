@@ -1,11 +1,11 @@
-//! Results have the same bits with any number of threads: each motion, with and without coupling, creepages and forces, derivatives.
+//! Results have the same bits with any number of threads, for each motion, with like and unlike bodies, creepages and forces, and derivatives.
 
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 use super::support::ball;
 
-/// With this many elements each pass is shared between threads.
+/// With M x M elements each pass over the grid is shared between threads.
 const M: usize = 160;
 
 fn check(name: &str, nu: [f64; 2], friction: Friction<'_>) {

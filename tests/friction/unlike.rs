@@ -1,4 +1,5 @@
-//! Unlike bodies: coupling coefficients compared with quadrature, the conditions of both problems by direct sums, Spence's indentation.
+//! Unlike bodies: coupling coefficients compared with quadrature, the conditions of the normal and the tangential problem by direct sums, and
+//! indentation with friction compared with Spence and with CONTACT.
 
 use std::f64::consts::PI;
 
@@ -11,12 +12,12 @@ use contact_normal::solver::{solve, Options, Outcome, Solver};
 use super::case::{distance, grid};
 use super::coefficients::{panels, rule};
 
-/// The integrals of `x/r^2` and `y/r^2` over an element: in y by the rule on panels that are graded towards the singular point, in x in closed form,
-/// `[ln(x^2 + y^2)]/2` and `[atan(x/y)]`.
+/// The integrals of `x/r^2` and `y/r^2` over an element: in y by the Gauss rule, on panels graded towards the singular point, and in x in closed
+/// form, by the differences between both ends of `[ln(x^2 + y^2)]/2` and `[atan(x/y)]`.
 fn by_quadrature(kx: f64, ky: f64, dx: f64, dy: f64) -> [f64; 2] {
     let (xp, xm) = ((kx + 0.5) * dx, (kx - 0.5) * dx);
     let panels = panels((ky - 0.5) * dy, (ky + 0.5) * dy);
-    // Far away the rounding of the ends exceeds that of the width.
+    // Far from the element the round-off of the ends of panels exceeds that of the width, so that the sum of the weights is corrected to dy.
     let width: f64 = dy / panels.iter().map(|(from, to)| to - from).sum::<f64>();
     let mut sum = [0.0; 2];
     for (from, to) in panels {
@@ -50,7 +51,7 @@ fn coupling_coefficients_are_those_of_quadrature() {
                 continue;
             }
             let error = (found[0] - exact[0]).hypot(found[1] - exact[1]) / exact[0].hypot(exact[1]);
-            // The tolerance of the other coefficients, for the rounding of the closed form in the quadrature.
+            // As for the other coefficients (coefficients.rs), the closed form in the quadrature loses digits.
             assert!(error <= 1e-12, "{aspect} ({kx}, {ky}): {found:?} {exact:?} {error}");
         }
     }
@@ -67,7 +68,7 @@ pub const RIGID_ON_SOFT: Bodies = Bodies { shear_modulus: [1.0, f64::INFINITY], 
 /// The coefficients of a pair of bodies on m x m elements of 0.25, for all offsets.
 pub struct Sums {
     m: usize,
-    /// Azz, Axx, Axy, Ayy, Axz, Ayz.
+    /// Of each offset: Azz, Axx, Axy, Ayy, Axz, Ayz.
     coefficients: Vec<[f64; 6]>,
 }
 
@@ -87,7 +88,7 @@ impl Sums {
         Sums { m, coefficients }
     }
 
-    /// The displacements [ux, uy, uz] of an element by tractions q, and those by pressures p.
+    /// The displacements [ux, uy, uz] of element i: those by the tractions q, and those by the pressures p.
     pub fn displacements(&self, i: usize, q: &[[f64; 2]], p: &[f64]) -> [[f64; 3]; 2] {
         let m = self.m;
         let [mut by_tractions, mut by_pressures] = [[0.0; 3]; 2];
@@ -111,7 +112,7 @@ fn both_problems_of_unlike_bodies_meet_their_conditions() {
         Bodies { shear_modulus: [1.0, 1e9], poisson_ratio: [0.3; 2] },
         Bodies { shear_modulus: [1.0, 3.0], poisson_ratio: [0.1, 0.45] },
     ];
-    // 1/G = 1/2, and K/G = (1 - 0)/4.
+    // By definition 1/G = (1/G1 + 1/G2)/2 = 1/2, and K/G = ((1 - 2 nu1)/G1 - (1 - 2 nu2)/G2)/4 = 1/4.
     let compliance = Compliance::of(&RIGID_ON_SOFT);
     assert_eq!((compliance.shear, compliance.unlike), (0.5, 0.25));
     for bodies in bodies {
@@ -124,8 +125,8 @@ fn both_problems_of_unlike_bodies_meet_their_conditions() {
                 {
                     let friction = Friction { prescribed, ..Friction::new(mu) };
                     let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, load) };
-                    let [normal, tangential] = left(&sums, &scene, tolerance);
-                    // Sums and transforms have different round-off.
+                    let [normal, tangential] = residuals(&sums, &scene, tolerance);
+                    // .1 % of the tolerance allows for the different round-off of direct sums and FFT products.
                     assert!(
                         normal.max(tangential) <= 1.001,
                         "{bodies:?} {mu} {tolerance:e} {load:?}: {normal} {tangential}"
@@ -136,8 +137,8 @@ fn both_problems_of_unlike_bodies_meet_their_conditions() {
     }
 }
 
-/// The residuals of both problems.
-fn left(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> [f64; 2] {
+/// The residuals of the normal and of the tangential problem, relative to the tolerance.
+fn residuals(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> [f64; 2] {
     let (friction, h) = (scene.friction.as_ref().unwrap(), scene.undeformed_distance);
     let (solver, stop, report) = solve(scene, &Options { tolerance, ..Options::default() }).unwrap();
     assert_eq!(stop, Outcome::Converged);
@@ -150,7 +151,7 @@ fn left(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> [f64; 2] {
     let (mut penetration, mut deepest) = (0.0_f64, 0.0_f64);
     for (i, h) in h.iter().enumerate() {
         let [by_q, by_p] = sums.displacements(i, &solution.traction, &state.p);
-        // The displacement by tractions is a part of the distance.
+        // The displacement by tractions along the normal adds to the undeformed distance.
         let d = h - state.approach + by_q[2];
         let e = d + by_p[2];
         assert!((state.deformed_distance(i) - e).abs() <= 1e-12, "{i}: {} {e}", state.deformed_distance(i));
@@ -178,7 +179,7 @@ fn left(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> [f64; 2] {
     let found = [(residual / distance).sqrt(), (slips / f64::max(rigid, moved)).sqrt()];
     let reported = [report.measures.certificate.residual, report.friction.unwrap().certificate.residual];
     for (found, reported) in found.iter().zip(reported) {
-        // The reported residual is that of the solution; the round-off of both is 1e-12.
+        // The reported residuals are those of the solution. Direct sums and FFT products differ by a round-off of 1e-12.
         assert!((found - reported).abs() <= 1e-10, "{found:e} {reported:e}");
     }
     found.map(|found| found / tolerance)
@@ -193,21 +194,22 @@ fn reported_bytes_hold_what_couples_unlike_bodies() {
         let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Approach(0.05)) };
         solve(&scene, &Options::default()).unwrap().2.bytes
     };
-    // For each element: tangential displacements (two numbers), those along the normal, the distance with them, previous pressures, two fields of a
-    // product; and the transforms of two odd kernels, a quarter of the waves of twice the sides.
+    // Each element has 7 more numbers: two tangential displacements, the displacement along the normal by tractions, the distance that includes it,
+    // previous pressures, and two fields of a product. Two odd kernels have transforms of a quarter of the waves of twice the sides: 2 numbers for
+    // each element.
     let least = (24 * 24 * (7 + 2)) as u64 * 8;
     assert!(bytes(0.2) >= bytes(0.3) + least, "{} {} {least}", bytes(0.2), bytes(0.3));
 }
 
 #[test]
 fn an_indentation_with_friction_is_similar_at_all_loads() {
-    // Spence 1968, 1975: while the load grows, the stick area is a constant part of the contact area. A rigid ball on a soft half-space.
+    // Spence (1968, 1975): while the load grows, the stick area is a constant part of the contact area. Here for a rigid ball on a soft half-space.
     let parts = stick_areas(RIGID_ON_SOFT);
     for part in &parts[15..] {
-        // CONTACT's spence35, a ball in 35 steps: 225 of 921 elements stick. Half an element of 0.25, on a radius of 3.2 to 4.8.
+        // In CONTACT's spence35, a ball in 35 steps, 225 of 921 elements stick. The tolerance is half an element of 0.25 on a radius of 3.2 to 4.8.
         assert!((part - (225.0_f64 / 921.0).sqrt()).abs() <= 0.04, "{parts:?}");
     }
-    // With nu = 0.3 pressures cause smaller tangential displacements: the stick area is larger, and again a constant part.
+    // With nu = 0.3 pressures cause smaller tangential displacements than with nu = 0: the stick area is larger, and again a constant part.
     let stiffer = stick_areas(Bodies { poisson_ratio: [0.3, 0.0], ..RIGID_ON_SOFT });
     let last = stiffer[23];
     for (part, with_nu_0) in stiffer[15..].iter().zip(&parts[15..]) {
@@ -215,7 +217,7 @@ fn an_indentation_with_friction_is_similar_at_all_loads() {
     }
 }
 
-/// The radius of the stick area, relative to that of the contact, while the load on a ball grows: 24 contact radii of 0.2 to 4.8.
+/// The radius of the stick area relative to that of the contact, while the load on a ball grows through 24 contact radii from 0.2 to 4.8.
 fn stick_areas(bodies: Bodies) -> Vec<f64> {
     let (grid, h) = ball(48);
     let scene =
@@ -263,7 +265,7 @@ fn contacts_spence35_is_met() {
         assert_eq!(stop, Outcome::Converged, "{stage}");
         let certificate = report.friction.unwrap().certificate;
         let found = (report.measures.contact_count, certificate.stick_count, certificate.slip_count);
-        // The printed counts of CONTACT.
+        // The numbers of elements in contact, in stick and in slip that CONTACT printed.
         for (printed, counts) in [(6, (29, 5, 24)), (18, (241, 61, 180)), (35, (921, 225, 696))] {
             if stage == printed {
                 assert_eq!(found, counts, "{stage}");
@@ -271,7 +273,7 @@ fn contacts_spence35_is_met() {
             }
         }
         if stage == 35 {
-            // Half of the last printed digit.
+            // The tolerance is half a unit of CONTACT's last printed digit.
             assert!((report.measures.max_pressure - 0.02392).abs() <= 5e-6, "{}", report.measures.max_pressure);
         }
     }

@@ -1,4 +1,4 @@
-//! Unlike bodies with given forces: tractions change the pressures, and so the greatest force.
+//! Unlike bodies with given tangential forces. Tractions change the pressures, and so the largest force that friction carries.
 
 use contact_normal::effects::Coefficient;
 use contact_normal::error::Error;
@@ -15,8 +15,8 @@ fn ball() -> (Grid, Vec<f64>) {
     (grid, distance(&grid, |x, y| (x * x + y * y) / 50.0))
 }
 
-/// The force of a given creepage must be possible, and must give the creepage back. The pressures without tractions carry less than most of these
-/// forces, if the coefficient of friction varies, or if the approach is given.
+/// The force that belongs to a given creepage must be accepted as a given force, and must give the creepage back. If mu differs between elements or
+/// the approach is given, the pressures without tractions carry less than most of these forces.
 #[test]
 fn forces_beyond_what_the_first_pressures_carry_are_found() {
     let (grid, h) = ball();
@@ -41,14 +41,14 @@ fn forces_beyond_what_the_first_pressures_carry_are_found() {
                     (force, carried)
                 };
                 let (force, carried) = of(&given(Prescribed::Creepage(creepage)));
-                // In full slip any larger creepage gives this force as well.
+                // In full slip any larger creepage has the same force, so that the force determines no creepage.
                 if force.abs() > (1.0 - 1e-6) * carried {
                     continue;
                 }
                 let (_, plain) = of(&Scene::new(grid, &h, RIGID_ON_SOFT, load));
                 beyond += usize::from(force.abs() > plain);
                 let (again, _) = of(&given(Prescribed::Force(force)));
-                // The tolerance of the force, which is relative to mu N.
+                // The tolerance of a given force is relative to mu N.
                 assert!((again - force).abs() <= 1e-9 * carried, "{load:?} {motion:?} {creepage}: {again} {force}");
             }
         }
@@ -56,7 +56,7 @@ fn forces_beyond_what_the_first_pressures_carry_are_found() {
     assert!(beyond > 5, "{beyond} beyond what the first pressures carry");
 }
 
-/// A force beyond that of the pressures in full slip, which a large creepage shows, is refused. The handle keeps its last result.
+/// A force above the one that the pressures carry in full slip, which is known from a large creepage, is refused. The handle keeps its last result.
 #[test]
 fn forces_beyond_full_slip_are_refused() {
     let (grid, h) = ball();
@@ -75,7 +75,7 @@ fn forces_beyond_full_slip_are_refused() {
         let refused = solver.solve(&with(Prescribed::Force(1.001 * most)), &options, None, None);
         let Err(Error::Infeasible(message)) = refused else { panic!("{refused:?}") };
         let least: f64 = message.rsplit(' ').next().unwrap().parse().unwrap();
-        // Creepages just below full slip carry a little more, 4.5e-4 with a given approach.
+        // Creepages just below full slip carry a little more than full slip, by 4.5e-4 with a given approach.
         let part = least / most.abs();
         assert!((1.0 - 1e-4..1.001).contains(&part), "{message}: {most}");
         assert!(solver.friction().unwrap().traction == traction, "the last result");
@@ -84,7 +84,8 @@ fn forces_beyond_full_slip_are_refused() {
     }
 }
 
-/// A tolerance below round-off is not met. The result is the best iterate by its residual in double precision, not by that in single precision.
+/// A tolerance below round-off cannot be met. The result is then the best iterate by its residual in double precision, not by that in single
+/// precision.
 #[test]
 fn below_round_off_the_best_is_returned() {
     for (m, mu) in [(35, 1.3e-4), (34, 1.5e-2), (22, 8.9e-3), (16, 1.4e-4), (29, 3.2e-3)] {
@@ -97,7 +98,7 @@ fn below_round_off_the_best_is_returned() {
                 for tolerance in [1e-15, 1e-16, 1e-17] {
                     let (_, _, report) = solve(&scene, &Options { tolerance, ..Options::default() }).unwrap();
                     let found = report.friction.unwrap().certificate;
-                    // Sums of some hundred terms, each with a rounding error of 1e-16.
+                    // Residuals are sums of some hundred terms, each with a rounding error of 1e-16.
                     assert!(found.residual <= 1e-14, "{m} {mu} {shift} {tolerance} {bodies:?}: {}", found.residual);
                 }
             }
@@ -106,7 +107,7 @@ fn below_round_off_the_best_is_returned() {
 }
 
 /// A flat soft punch on a rigid body carries up to 1 % more force just before full slip than in full slip. The force of any creepage must be
-/// possible. Close to the largest force a search takes some 2000 products.
+/// accepted. Close to the largest force a search takes some 2000 products.
 #[test]
 fn forces_between_full_slip_and_the_largest_are_found() {
     for (m, mu, motion) in [((11, 5), 1.0, Motion::SteadyRolling), ((11, 25), 2.0, Motion::Shift)] {
@@ -127,7 +128,7 @@ fn forces_between_full_slip_and_the_largest_are_found() {
             let found = force(Prescribed::Force(wanted)).unwrap_or_else(|error| panic!("{m:?} {part}: {error}"));
             assert!((found / wanted - 1.0).abs() <= 1e-6, "{m:?} {part}: {found} {wanted}");
         }
-        // Between two of the thirty creepages the force may be some thousandths larger. A search for a force out of reach ends.
+        // Between two of the thirty creepages the force may be some thousandths larger than at these. A search for a force out of reach ends.
         let Err(Error::Infeasible(message)) = force(Prescribed::Force(1.01 * largest)) else { panic!("{m:?}") };
         let most: f64 = message.rsplit(' ').next().unwrap().parse().unwrap();
         assert!((0.997..1.005).contains(&(most / largest)), "{message}: {largest}");

@@ -6,21 +6,21 @@ use contact_normal::solver::{solve, Options, Outcome};
 use super::case::paraboloid;
 use super::unlike::RIGID_ON_SOFT;
 
-/// Half the step of a difference, relative to a motion of full slip: hardly any element changes between stick and slip.
+/// Half the step of a central difference, relative to a motion of full slip. It is so small that hardly any element changes between stick and slip.
 const STEP: f64 = 1e-5;
 
 fn at(scene: &Scene<'_>, creepage: [f64; 2], spin: f64, sensitivities: bool) -> ([f64; 3], Option<[[f64; 3]; 3]>) {
     let prescribed = creepage.map(Prescribed::Creepage);
     let friction = Friction { prescribed, spin, sensitivities, ..scene.friction.unwrap() };
     let scene = Scene { friction: Some(friction), ..scene.clone() };
-    // Differences are 1e-5 of the forces, and need an accuracy of 1e-5: a residual of 1e-11 has a smaller error.
+    // The differences are 1e-5 of the forces, and must be accurate to 1e-5: the error of the forces at a residual of 1e-11 is smaller.
     let (_, stop, report) = solve(&scene, &Options { tolerance: 1e-11, ..Options::default() }).unwrap();
     assert_eq!(stop, Outcome::Converged);
     let found = report.friction.unwrap();
     ([found.force[0], found.force[1], found.moment], found.sensitivities)
 }
 
-/// The largest difference, relative to the largest derivative, moments and spins in units of the radius.
+/// The largest error of a derivative, relative to the largest derivative, with moments and spins in units of the radius.
 fn off(scene: &Scene<'_>, creepage: [f64; 2], spin: f64, (size, radius): (f64, f64)) -> f64 {
     let found = at(scene, creepage, spin, true).1.expect("derivatives");
     let (mut off, mut largest) = (0.0_f64, 0.0_f64);
@@ -66,11 +66,12 @@ fn derivatives_are_those_of_whole_solves() {
                     pressure_limit: limit.map(|limit| PressureLimit(Each::Uniform(limit))),
                     ..Scene::new(grid, &h, bodies, load)
                 };
-                // From little slip to full slip.
+                // Parts of a motion of full slip, from little slip to full slip.
                 let size = if motion == Motion::Shift { 0.1 * mu } else { 0.05 * mu };
                 for part in [0.15, 0.5, 1.5] {
                     let off = off(&scene, [-part * size, 0.4 * part * size], 0.02 * part * size, (size, 3.0));
-                    // The error of the linear solves is 1e-5. With fixed pressures the derivatives would differ by .05 to .5.
+                    // The linear systems are solved to 1e-5. Derivatives with fixed pressures would differ by .05 to .5, so that the test sees the
+                    // coupling.
                     assert!(off <= 3e-5, "{bodies:?} {motion:?} {load:?} {limit:?} {part}: {off:e}");
                 }
             }
@@ -78,9 +79,9 @@ fn derivatives_are_those_of_whole_solves() {
     }
 }
 
-/// Without slip, or without any force, nothing is divided by 0.
+/// Without slip, or without any force, derivatives are numbers: nothing is divided by 0.
 #[test]
-fn the_ends_of_the_way() {
+fn derivatives_without_slip_and_without_force_are_numbers() {
     let m = 12;
     let grid = contact_normal::grid::Grid::new(m, m, 0.5, 0.5).unwrap();
     let h = paraboloid(&grid, 0.04);

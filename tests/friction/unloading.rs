@@ -1,4 +1,4 @@
-//! Steps without a rigid slip in the contact: previous tractions are released, and rigid slips outside the contact have no effect.
+//! Steps without a rigid slip in the contact. Previous tractions relax, and rigid slips outside the contact have no effect.
 
 use contact_normal::friction::{Compliance, Tangential, Vector};
 use contact_normal::grid::Grid;
@@ -25,14 +25,14 @@ fn displaced(grid: &Grid, by: f64, q: &[Vector]) -> Vec<Vector> {
     u
 }
 
-/// Tractions in `[k][element]`, `size` times the bound of one element under a unit pressure, in all directions.
+/// Tractions as `[k][element]`, of all directions, `size` times the bound of an element under a unit pressure.
 fn tractions(n: usize, size: f64) -> [Vec<f64>; 2] {
     let of = |i: usize, k: usize| size * ((i * 7919 + 104_729 * k) as f64).sin();
     [0, 1].map(|k| (0..n).map(|i| of(i, k)).collect())
 }
 
-/// Larger previous tractions cause larger round-off of their displacements, and so of the slip. Steps of rolling without creepage must converge all
-/// the same.
+/// Larger previous tractions have displacements with larger round-off, and so has the slip. Rolling steps without creepage must converge all the
+/// same.
 #[test]
 fn tractions_relax_however_large_they_were() {
     let (grid, h) = ball(9, 1.0);
@@ -52,8 +52,8 @@ fn tractions_relax_however_large_they_were() {
             let (solver, gap) = solved(&scene, &what);
             let (p, q) = (&solver.state().p, &solver.friction().expect("tractions").traction);
             let pressed = |i: usize| p[i] > 0.0;
-            let left: Vec<Vector> = (0..grid.len()).map(|i| [before[0][i], before[1][i]]).collect();
-            let (now, then) = (displaced(&grid, 0.0, q), displaced(&grid, by, &left));
+            let previous: Vec<Vector> = (0..grid.len()).map(|i| [before[0][i], before[1][i]]).collect();
+            let (now, then) = (displaced(&grid, 0.0, q), displaced(&grid, by, &previous));
             let (mut lost, mut scale) = (0.0, 0.0);
             for i in (0..grid.len()).filter(|&i| pressed(i)) {
                 let bound = MU * p[i];
@@ -62,7 +62,8 @@ fn tractions_relax_however_large_they_were() {
                 lost += s[0] * q[i][0] + s[1] * q[i][1] + bound * s[0].hypot(s[1]);
                 scale += bound * then[i][0].hypot(then[i][1]);
             }
-            // The default tolerance is 1e-6, and in rolling the residual is relative to 1.5e-8 of u' at least.
+            // `scale` is the work of mu p over the displacements u' of the previous tractions. The tolerance is 1e-6 of a slip that in rolling is at
+            // least 1.5e-8 of u'.
             assert!(lost <= 1e-5 * scale, "{what}: {lost:e} of {scale:e}");
             assert!((0.0..=1e-4).contains(&gap), "{what}: gap {gap:e}");
             count += 1;
@@ -71,7 +72,7 @@ fn tractions_relax_however_large_they_were() {
     assert_eq!(count, 10);
 }
 
-/// Only a rigid slip in the contact is a motion: one outside must not be refused as a slip of 1e-60 times the displacements.
+/// Only a rigid slip in the contact counts as a motion. One outside must not be refused as a slip that is 1e-60 times the displacements.
 #[test]
 fn a_slip_beside_the_contact_is_no_motion() {
     let m = 9;
@@ -92,7 +93,7 @@ fn a_slip_beside_the_contact_is_no_motion() {
     }
 }
 
-/// A force of 0 with a spin: the creepages cancel the slip of the only element.
+/// A force of 0 is given beside a spin. The creepages cancel the slip of the only element, so that no work is done and the relative gap is 0/0.
 #[test]
 fn a_gap_without_work_is_a_number() {
     let grid = Grid::new(1, 1, 1.0, 1.0).unwrap();

@@ -1,4 +1,4 @@
-//! Frictional work and wear: balances of energy by direct sums, and closed forms.
+//! Frictional work and wear, compared with balances of energy by direct sums and with closed forms.
 
 use contact_normal::error::Error;
 use contact_normal::friction::Solution;
@@ -20,7 +20,7 @@ fn split(of: &[[f64; 2]]) -> [Vec<f64>; 2] {
     [0, 1].map(|k| of.iter().map(|v| v[k]).collect())
 }
 
-/// Wear by the work with K/H = 1.
+/// Input of wear by frictional work, with K/H = 1 and no tractions yet.
 fn by_work(grid: &Grid) -> Wear<'static> {
     Wear {
         grid: *grid,
@@ -39,8 +39,8 @@ fn worn(found: &Solution, wear: Wear<'_>) -> Worn {
     frictional_wear(&Wear { traction: [&q[0], &q[1]], slip: [&s[0], &s[1]], ..wear }).expect("wear")
 }
 
-/// The work of the motion, the sum of q . (w + A q - A' q') by direct sums: w is the rigid slip, A' q' the displacement by the previous tractions.
-/// Also the scale of its round-off.
+/// The work of the motion, the sum of q . (w + A q - A' q') by direct sums. w is the rigid slip, and A' q' the displacement by the previous
+/// tractions. Also returns the scale of its round-off.
 fn put_in(grid: &Grid, friction: &Friction<'_>, found: &Solution, before: &[[f64; 2]]) -> (f64, f64) {
     let (n, q) = (grid.len(), &found.traction);
     let (mut u, mut u_before) = (vec![[0.0; 2]; n], vec![[0.0; 2]; n]);
@@ -87,13 +87,13 @@ fn the_work_of_all_elements_is_what_the_motion_puts_in_less_what_is_stored() {
         };
         let (exact, scale) = put_in(&grid, friction, &found, before);
         let total = worn(&found, by_work(&grid)).total_work;
-        // Round-off of coefficients, transforms and sums, as for the conditions.
+        // The round-off of coefficients, transforms and sums: the same factor of 1e-12 as for the conditions (support.rs).
         assert!((total - exact).abs() <= 1e-12 * scale, "{friction:?}: {total} {exact}");
         assert!(total > 0.0);
     }
 }
 
-/// Bodies that slide on, after full slip: displacements do not change, the whole motion is slip, and the work is mu F s.
+/// Bodies in full slip slide on. The displacements do not change, so that the whole motion is slip, and the work is mu F s.
 #[test]
 fn a_hertzian_contact_that_slides_on_loses_mu_f_s() {
     let (mu, n, d, radius, force) = (0.3, 48, 0.25, 500.0, 1000.0);
@@ -109,7 +109,7 @@ fn a_hertzian_contact_that_slides_on_loses_mu_f_s() {
         assert_eq!(stop, Outcome::Converged);
         (solver.friction().unwrap().clone(), solver.state().p.clone())
     };
-    // In each step tractions turn towards the motion, up to a hundredth of the remaining angle.
+    // In each step tractions turn towards the motion, until a hundredth of the angle is left.
     let (mut found, mut p) = solved(None);
     for _ in 0..5 {
         let q = split(&found.traction);
@@ -117,25 +117,26 @@ fn a_hertzian_contact_that_slides_on_loses_mu_f_s() {
     }
     let (exact, most) = (mu * force * 0.15, p.iter().copied().fold(0.0, f64::max));
     let once = worn(&found, by_work(&grid));
-    // The elastic displacement is a hundredth of the slip. The directions of both steps are equal to the tolerance of 1e-10, relative to the slip.
+    // The elastic displacement is a hundredth of the slip. The directions of two successive steps differ by the tolerance of 1e-10, relative to the
+    // slip.
     assert!((once.total_work / exact - 1.0).abs() <= 1e-9, "{} {exact}", once.total_work);
     assert!((once.volume / exact - 1.0).abs() <= 1e-9);
     assert!((once.largest / (mu * most * 0.15) - 1.0).abs() <= 1e-9 && p[once.at] == most);
     for (work, p) in once.work.iter().zip(&p) {
         assert!((work - mu * p * 0.15).abs() <= 1e-9 * mu * most * 0.15);
     }
-    // Archard's law by the load: K F s/H for 2.5 steps, with K per element.
+    // Archard's law by pressure and slip: the volume K F s/H for 2.5 steps, with K per element.
     let own: Vec<f64> = (0..n * n).map(|i| if i % n < n / 2 { 1e-3 } else { 3e-3 }).collect();
     let coefficient = Coefficient::PerElement(&own);
     let wear = Wear { pressure: Some(&p), hardness: 2000.0, steps: 2.5, coefficient, ..by_work(&grid) };
     let by_load = worn(&found, wear);
     let halves = 2.5 * 2e-3 / 2000.0 * force * 0.15;
-    // The pressures of both halves are equal to the tolerance of the normal problem.
+    // The mean of the two K counts, because both halves have the same pressures, to the tolerance of the normal problem.
     assert!((by_load.volume / halves - 1.0).abs() <= 1e-6, "{} {halves}", by_load.volume);
     assert!((by_load.total_work / (2.5 * exact) - 1.0).abs() <= 1e-9 && by_load.passage.is_empty());
 }
 
-/// Carter: the power is `F xi V`, with F = mu N (1 - (a'/a)^2), and the depth of a passage is K/H F xi/width.
+/// Carter's cylinder: the power is `F xi V`, with F = mu N (1 - (a'/a)^2), and the depth of wear in a passage is K/H F xi/width.
 #[test]
 fn a_cylinder_that_rolls_wears_as_carter_says() {
     let (creepage, load, width) = (0.00024, 35780.0, 200.0);
@@ -157,12 +158,13 @@ fn a_cylinder_that_rolls_wears_as_carter_says() {
         let speed = 20_000.0;
         let wear = Wear { steps: speed / dx, rolling_distance: dx, hardness: 1e6, ..by_work(&grid) };
         let worn = worn(solver.friction().unwrap(), wear);
-        // The stick area is .6 a.
+        // The stick area is a' = .6 a: F = .64 mu N.
         let exact = 0.3 * load * 0.64 * creepage * speed;
         let error = (worn.total_work / exact - 1.0).abs();
-        // The error of the force is .8/m of mu N, 1.25/m of the force. Differences over an element dissipate at most as much again.
+        // The error of the force is .8/m of mu N (steady.rs), 1.25/m of the force. Differences of displacements over an element dissipate at most as
+        // much again.
         assert!(error <= 2.5 / m as f64 && error < 0.9 * before, "{m}: {error} {before}");
-        // The work is never above force times creepage, because differences dissipate.
+        // The work never exceeds force times creepage, because the difference of displacements loses work.
         assert!(worn.total_work <= force * creepage * speed * (1.0 + 1e-6), "{} {force}", worn.total_work);
         let passage = 0.3 * load * 0.64 * creepage / width / 1e6;
         assert!((worn.passage[0] / passage - 1.0).abs() <= 2.5 / m as f64 && worn.passage.len() == 1);
@@ -187,18 +189,19 @@ fn numbers_out_of_their_range_are_refused() {
     for each in [Wear { pressure: Some(&bad), ..wear }, Wear { traction: [&bad, &ones], ..wear }] {
         assert!(matches!(frictional_wear(&each), Err(Error::NotFinite(_))));
     }
-    // Tractions along the slip: a work below 0, which wears nothing.
+    // Tractions in the direction of the slip have a negative work, which wears nothing off.
     let along = frictional_wear(&wear).unwrap();
     assert!(along.total_work == -8.0 && along.volume == 0.0 && along.largest == 0.0);
 }
 
-/// Inputs times powers of two give results times powers of two, also if products of single factors overflow or underflow.
+/// Inputs that are multiplied by powers of two give results that are multiplied by powers of two, also if products of single factors overflow or
+/// underflow.
 #[test]
 fn work_and_depth_are_right_at_the_ends_of_the_range_of_numbers() {
     let by = |value: f64, power: i32| value * 2f64.powi(power / 2) * 2f64.powi(power - power / 2);
     let at = |k: usize| 0.3 + 0.7 * (0.37 * k as f64).sin().abs();
     let field = |from: usize, power: i32| -> Vec<f64> { (from..from + 12).map(|k| by(at(k), power)).collect() };
-    // The powers are those of q, s, p, K, H, the steps, dx, dy, dq.
+    // The powers of q, s, p, K, H, the steps, dx, dy and dq, in this order.
     let of = |powers: [i32; 9], by_load: bool| {
         let [of_q, of_s, of_p, of_k, of_h, of_steps, of_dx, of_dy, of_dq] = powers;
         let q = [0, 20].map(|k| field(k, of_q));
@@ -218,7 +221,7 @@ fn work_and_depth_are_right_at_the_ends_of_the_range_of_numbers() {
     };
     for by_load in [false, true] {
         let plain = of([0; 9], by_load).unwrap();
-        // The formula, evaluated in its order.
+        // The formula of the depth, evaluated in the order in which it is written.
         let by_hand = 5.0 * at(100) / 3.0
             * if by_load { at(80) * at(40).hypot(at(60)) } else { at(0) * at(40) + at(20) * at(60) };
         assert!((plain.depth[0] / by_hand - 1.0).abs() <= 1e-15 && plain.passage.len() == 3);
@@ -257,7 +260,7 @@ fn work_and_depth_are_right_at_the_ends_of_the_range_of_numbers() {
     }
 }
 
-/// Elements whose factors differ by more than the range of numbers.
+/// The factors of an element's work may differ by more than the range of numbers.
 #[test]
 fn elements_of_any_size_have_their_work() {
     let grid = Grid::new(2, 1, 1.0, 1.0).unwrap();
@@ -273,7 +276,7 @@ fn elements_of_any_size_have_their_work() {
         rolling_distance: 0.0,
     };
     let found = frictional_wear(&wear).unwrap();
-    // Each product has one rounding, as in the plain formula.
+    // Each product has a single rounding error, as in the plain formula.
     assert_eq!((found.work[0], found.work[1]), (1e200 * 1e-150, 1e-200 * 1e200));
     assert_eq!(found.total_work, found.work[0] + found.work[1]);
     let wide = Wear { slip: [&[-1e100, -1e-50], &none], ..wear };

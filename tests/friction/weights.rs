@@ -1,5 +1,5 @@
-//! Weights of creepages: surfaces that are inclined within the contact area. A creepage moves an element by its weight, and the force of the
-//! direction is the sum of weights times tractions.
+//! Weights of creepages, for surfaces that are inclined within the contact area. A creepage moves an element by the creepage times its weight. The
+//! force in a direction is the sum of weights times tractions.
 
 use contact_normal::error::Error;
 use contact_normal::friction::Request;
@@ -10,7 +10,7 @@ use contact_normal::solver::Outcome;
 use super::scenes::Ellipse;
 use super::support::{residual, run, solver};
 
-/// Cosines of inclinations up to about a right angle, and beyond it for `reversed`.
+/// Weights: 1 in x, and in y the cosines of inclinations of up to about a right angle, or beyond it if `reversed`.
 fn cosines(grid: &Grid, reversed: bool) -> [Vec<f64>; 2] {
     let most = if reversed { 2.0 } else { 1.2 };
     let angle = |i: usize| most * (2.0 * (i / grid.mx) as f64 / (grid.my - 1) as f64 - 1.0);
@@ -36,9 +36,9 @@ fn forces_are_sums_of_weighted_tractions() {
                 let (report, solution) = run(&mut solver, &case.bound, &friction, 1e-6);
                 let none = vec![[0.0; 2]; case.grid.len()];
                 let place = (&case.grid, case.nu);
-                let left = residual(place, &case.bound, &friction, &none, (&report, &solution));
-                // The tolerance, and round-off of two products.
-                assert!(left <= 1.001e-6, "{seed} {motion:?} {part}: {left}");
+                let slip_residual = residual(place, &case.bound, &friction, &none, (&report, &solution));
+                // The tolerance of the solve, and 1e-9 for the different round-off of direct sums and FFT products.
+                assert!(slip_residual <= 1.001e-6, "{seed} {motion:?} {part}: {slip_residual}");
                 let carried: f64 = case.bound.iter().sum::<f64>() * area;
                 for k in 0..2 {
                     let terms = solution.traction.iter().zip(&weights[k]).map(|(q, weight)| weight * q[k]);
@@ -48,12 +48,12 @@ fn forces_are_sums_of_weighted_tractions() {
                 if motion == Motion::SteadyRolling {
                     continue;
                 }
-                // The next step, with less force.
+                // The next step, with 70 % of the force.
                 let prescribed = force.map(|force| Prescribed::Force(0.7 * force));
                 let next = Friction { previous: Previous::Kept, prescribed, ..friction };
                 let (report, after) = run(&mut solver, &case.bound, &next, 1e-6);
-                let left = residual(place, &case.bound, &next, &solution.traction, (&report, &after));
-                assert!(left <= 1.001e-6, "{seed} {motion:?} {part}, the next step: {left}");
+                let slip_residual = residual(place, &case.bound, &next, &solution.traction, (&report, &after));
+                assert!(slip_residual <= 1.001e-6, "{seed} {motion:?} {part}, the next step: {slip_residual}");
             }
         }
     }
@@ -66,7 +66,7 @@ fn creepages_that_are_given_are_weighted_too() {
     let views = weights.each_ref().map(|weights| &weights[..]);
     let prescribed = [Prescribed::Creepage(-0.2), Prescribed::Creepage(0.3)];
     let weighted = Friction { prescribed, weights: Some(views), ..case.friction };
-    // The result equals that of the caller's own rigid slip.
+    // The result equals that of a caller's rigid slip with the same numbers.
     let slips = [0, 1].map(|k| weights[k].iter().map(|weight| weight * [-0.2, 0.3][k]).collect::<Vec<f64>>());
     let own = Some(slips.each_ref().map(|slip| &slip[..]));
     let rigid = Friction { prescribed: [Prescribed::Creepage(0.0); 2], rigid_slip: own, ..case.friction };
@@ -110,8 +110,8 @@ fn forces_that_weights_cannot_carry_are_refused() {
     assert!(end == Outcome::Converged && creepage[0].abs() < 1e-15 && creepage[1] < -0.1, "{end:?} {creepage:?}");
 }
 
-/// The greatest multiple of a force that elements carry, by the tractions of 20000 directions of creepages: each gives a half-plane that contains all
-/// forces that can be carried.
+/// The largest multiple of a force that the elements can carry. For each of 20000 directions of creepage the tractions of full slip give a half-plane
+/// that contains all forces that can be carried; the multiple is the least over the half-planes.
 fn reach(force: [f64; 2], bound: &[f64], weights: &[Vec<f64>; 2], area: f64) -> f64 {
     let part = |k: usize| {
         let angle = std::f64::consts::TAU * k as f64 / 20000.0;
@@ -180,7 +180,7 @@ fn a_force_of_zero_is_met_beside_one_without_weights() {
                 prescribed[k] = Prescribed::Force(force);
                 let mut weights = [&zeros[..]; 2];
                 weights[k] = &ones;
-                // Spin about a place off the centre causes a force, unless a creepage balances it.
+                // A spin about a place off the centre causes a force, which a creepage has to balance.
                 let friction = Friction {
                     motion,
                     prescribed,

@@ -3,7 +3,7 @@
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Motion, Prescribed};
 
-/// Undeformed distances on grid `k` (1, 2, 4 or 8).
+/// The grid and the undeformed distances of grid `k` of the data (1, 2, 4 or 8).
 pub fn surface(k: usize) -> (Grid, Vec<f64>) {
     let text = include_str!("../../data/friction/wheel_rail_profile.txt");
     let rows = text.lines().filter(|line| !line.starts_with('#'));
@@ -31,12 +31,12 @@ pub fn surface(k: usize) -> (Grid, Vec<f64>) {
     (grid, h)
 }
 
-/// The origin of the coordinates, from the middle of the grid.
+/// The origin of the data's coordinates, relative to the middle of the grid.
 fn origin(grid: &Grid) -> [f64; 2] {
     [3.55 - 0.5 * grid.mx as f64 * grid.dx, 6.15 - 0.5 * grid.my as f64 * grid.dy]
 }
 
-/// The shift of the data.
+/// The shift of the data, with its spin.
 pub fn shift(grid: &Grid) -> Friction<'static> {
     Friction {
         prescribed: [Prescribed::Creepage(0.0005), Prescribed::Creepage(-0.0010)],
@@ -46,7 +46,7 @@ pub fn shift(grid: &Grid) -> Friction<'static> {
     }
 }
 
-/// Steady rolling with given creepages, c of the data.
+/// Steady rolling with given creepages: case c of the data.
 pub fn rolling(grid: &Grid) -> Friction<'static> {
     Friction {
         motion: Motion::SteadyRolling,
@@ -57,7 +57,7 @@ pub fn rolling(grid: &Grid) -> Friction<'static> {
     }
 }
 
-/// Steady rolling with given forces, f of the data; `carried` is mu N.
+/// Steady rolling with given forces: case f of the data. `carried` is mu N.
 pub fn rolling_with_forces(grid: &Grid, carried: f64) -> Friction<'static> {
     let prescribed = [-0.573, -0.327].map(|part| Prescribed::Force(part * carried));
     Friction { prescribed, ..rolling(grid) }

@@ -1,4 +1,4 @@
-//! The shift and the steady rolling of a wheel on a rail, beside the output of CONTACT (data/friction/README.md).
+//! The shift and the steady rolling of a wheel on a rail, compared with the output of CONTACT (data/friction/README.md).
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Scene};
@@ -22,7 +22,7 @@ fn a_shift_of_a_wheel_is_that_of_contact() {
         (2, 12902, 7243, [-0.2197644, 0.1581319], 18.0),
         (4, 50796, 28260, [-0.2197680, 0.1581256], 22.0),
     ] {
-        // The products of the prototype in Python.
+        // The bounds are the products of the prototype in Python.
         let products = solved(k, 1e-6, shift).friction.unwrap().products;
         assert!(products <= most, "{k}: {products} products");
         let report = solved(k, 1e-7, shift);
@@ -32,7 +32,7 @@ fn a_shift_of_a_wheel_is_that_of_contact() {
         assert!(found.certificate.slip_count.abs_diff(slips) <= 1, "{}", found.certificate.slip_count);
         for (found, force) in found.force.iter().zip(force) {
             let part = found / (0.3 * report.measures.force);
-            // The printed digits, and the error with a residual of 1e-7.
+            // Half a unit of the last printed digit, and the error of a solve with a residual of 1e-7.
             assert!((part - force).abs() <= 2e-7, "{part} {force}");
         }
     }
@@ -58,7 +58,7 @@ fn steady_rolling_of_a_wheel_is_that_of_contact() {
         assert_eq!(found.certificate.slip_count, slips);
         for (found, force) in found.force.iter().zip(force) {
             let part = found / (0.3 * report.measures.force);
-            // Half of the last printed digit, and the error with a residual of 1e-9.
+            // Half a unit of the last printed digit, and the error of a solve with a residual of 1e-9.
             assert!((part - force).abs() <= 5.1e-8, "{part} {force}");
         }
     }
@@ -69,13 +69,13 @@ fn creepages_of_a_wheel_with_forces_are_those_of_contact() {
     for (k, slips, xi, eta) in
         [(1, 1872, 5.000884e-4, 8.310e-8), (2, 7757, 5.027396e-4, 1.92857e-6), (4, 30263, 5.0361e-4, f64::NAN)]
     {
-        // The normal force is that of the approach.
+        // The approach is given, so that the normal force is known from a first solve.
         let carried = 0.3 * solved(k, 1e-9, rolling).measures.force;
         let report = solved(k, 1e-8, |grid| rolling_with_forces(grid, carried));
         let found = report.friction.unwrap();
         assert_eq!(found.certificate.slip_count, slips);
         let printed = if eta.is_nan() { 5e-9 } else { 5e-11 };
-        // The printed digits, and the error of creepages of this size with a residual of 1e-8.
+        // Half a unit of the last printed digit, and the error of creepages of this size with a residual of 1e-8.
         assert!((found.creepage[0] - xi).abs() <= printed + 1e-10, "{:?}", found.creepage);
         assert!(eta.is_nan() || (found.creepage[1] - eta).abs() <= printed + 1e-10, "{:?}", found.creepage);
         for (found, part) in found.force.iter().zip([-0.573, -0.327]) {

@@ -1,4 +1,4 @@
-//! After any allocation has failed, a handle holds its previous result, or none, and its next call works.
+//! Whichever allocation fails, the handle then holds its previous result, or none, and its next call works.
 
 use std::ptr::{null, null_mut};
 
@@ -7,7 +7,7 @@ use super::limited_memory::{self, release, until_enough};
 use super::{alone, Handle};
 use contact_normal::ffi::*;
 
-/// The number of elements in each direction: arrays in single precision count as large, but no array of a row does.
+/// The number of elements in each direction. It is such that arrays of the grid in single precision count as large, but no array of a row does.
 const M: usize = 64;
 const N: usize = M * M;
 /// The factors of two patches.
@@ -51,15 +51,15 @@ impl Ball {
         ball.patches.factors = FACTORS.as_ptr();
         ball.limit.limit = 0.2;
         let coating = &mut ball.coating;
-        // A stiff coating, thicker than an element is wide, so that all kinds of coefficients occur.
+        // A stiff coating that is thicker than an element is wide, so that all kinds of coefficients occur.
         (coating.thickness, coating.shear_modulus, coating.poisson_ratio) = (0.4, 3.0, 0.2);
         (ball.period.x, ball.period.y) = (1, 1);
         (ball.friction.coefficient, ball.friction.creepage) = (0.3, [-0.01, 0.0]);
         ball
     }
 
-    /// Names one effect of the scene, or none.
-    fn name(&mut self, effect: &str) {
+    /// Gives the scene the effects that the text `effect` names, or none.
+    fn set_effect(&mut self, effect: &str) {
         let (layer, patches, limit) = (&raw const self.layer, &raw const self.patches, &raw const self.limit);
         let (coating, period) = (&raw const self.coating, &raw const self.period);
         let friction = &raw const self.friction;
@@ -82,13 +82,13 @@ impl Ball {
             _ => panic!("{effect}"),
         }
         (scene.load, scene.force) = match effect.contains("period") {
-            // With two periods the force is prescribed.
+            // With two periods the force is prescribed, otherwise the approach.
             true => (CONTACT_NORMAL_PRESCRIBED_FORCE, 0.02),
             false => (CONTACT_NORMAL_PRESCRIBED_APPROACH, 0.0),
         };
     }
 
-    /// Solves with the handle; returns status and pressures.
+    /// Solves with the handle. Returns the status and the pressures.
     fn solve(&self, handle: &Handle, method: i32) -> (i32, Vec<f64>) {
         let mut options = initialised(contact_normal_options_init);
         (options.method, options.tolerance) = (method, 1e-3);
@@ -108,7 +108,7 @@ impl Ball {
     }
 }
 
-/// Solves the tangential problem alone; returns status and tractions.
+/// Solves the tangential problem alone. Returns the status and the tractions.
 fn solve_tangential(ball: &Ball, pressure: &[f64]) -> (i32, Vec<f64>) {
     let mut traction = vec![-7.0; 2 * N];
     let mut results = initialised(contact_normal_friction_results_init);
@@ -120,7 +120,7 @@ fn solve_tangential(ball: &Ball, pressure: &[f64]) -> (i32, Vec<f64>) {
     (status, traction)
 }
 
-/// The pressures that the handle holds, or None.
+/// The pressures that the handle holds, or `None` if it has no result.
 fn held(handle: &Handle) -> Option<Vec<f64>> {
     let (mut p, mut fields) = (vec![-7.0; N], initialised(contact_normal_fields_init));
     fields.pressure = p.as_mut_ptr();
@@ -129,7 +129,8 @@ fn held(handle: &Handle) -> Option<Vec<f64>> {
     (status == CONTACT_NORMAL_OK).then_some(p)
 }
 
-/// Lets one allocation after the other fail, until a solve by `method` succeeds; `first` is the method of an earlier solve.
+/// Lets one allocation after the other fail, until a solve by `method` succeeds. If `first` is given, the handle has made a solve by this method
+/// before.
 fn fails_everywhere(ball: &Ball, first: Option<i32>, method: i32, what: &str) {
     let expected = ball.solve(&ball.new_handle(), method);
     assert_eq!(expected.0, CONTACT_NORMAL_OK, "{what}");
@@ -141,8 +142,8 @@ fn fails_everywhere(ball: &Ball, first: Option<i32>, method: i32, what: &str) {
         let before = held(&handle);
         assert_eq!(before.is_some(), first.is_some());
         release();
-        // The test's own array is the first of the allowed ones. Windows are smaller than the grid, so that arrays of half its elements count as
-        // large.
+        // The first of the allowed allocations is the test's own array. Windows are smaller than the grid, so that arrays of half its elements count
+        // as large.
         let (status, _) = limited_memory::with(2 * N, 1 + allowed, || ball.solve(&handle, method));
         if status != CONTACT_NORMAL_OK {
             let after = held(&handle);
@@ -158,7 +159,7 @@ fn after_a_lack_of_memory_the_handle_works() {
     let _alone = alone();
     let mut ball = Ball::new();
     for effect in ["none", "pressure_limit", "layer", "patches", "coating"] {
-        ball.name(effect);
+        ball.set_effect(effect);
         let methods = if effect == "none" { &[0, 1, 2, 3][..] } else { &[0, 1] };
         for &method in methods {
             for first in [None, Some(1 - method.min(1))] {
@@ -168,13 +169,13 @@ fn after_a_lack_of_memory_the_handle_works() {
     }
 }
 
-/// A set-up that lacks memory makes no handle, and does not affect the next one.
+/// If a set-up lacks memory, there is no handle, and the next set-up is not affected.
 #[test]
 fn a_set_up_without_memory_makes_no_handle() {
     let _alone = alone();
     let mut ball = Ball::new();
     for effect in ["none", "layer", "patches", "period", "coating", "coating with a period"] {
-        ball.name(effect);
+        ball.set_effect(effect);
         let expected = ball.solve(&ball.new_handle(), 0);
         assert_eq!(expected.0, CONTACT_NORMAL_OK, "{effect}");
         until_enough(effect, |allowed| {
@@ -194,13 +195,13 @@ fn a_set_up_without_memory_makes_no_handle() {
 
 const FRICTION: [&str; 4] = ["friction", "friction rolling", "unlike friction", "unlike friction rolling"];
 
-/// A step that continues keeps the previous tractions.
+/// If a step that continues lacks memory, the handle keeps the previous tractions.
 #[test]
 fn after_a_lack_of_memory_in_a_step_that_continues_the_handle_works() {
     let _alone = alone();
     let mut ball = Ball::new();
     for effect in FRICTION {
-        ball.name(effect);
+        ball.set_effect(effect);
         for first in [None, Some(0)] {
             fails_everywhere(&ball, first, 1, &format!("{effect} after {first:?}"));
         }
@@ -237,12 +238,12 @@ fn a_tangential_solve_without_memory_is_refused() {
     let _alone = alone();
     let mut ball = Ball::new();
     for effect in FRICTION {
-        ball.name(effect);
+        ball.set_effect(effect);
         let (_, pressure) = ball.solve(&ball.new_handle(), 1);
         let expected = solve_tangential(&ball, &pressure);
         assert_eq!(expected.0, CONTACT_NORMAL_OK, "{effect}");
         until_enough(effect, |allowed| {
-            // The test's own array is the first of the allowed ones.
+            // The first of the allowed allocations is the test's own array.
             let (status, q) = limited_memory::with(4 * N, 1 + allowed, || solve_tangential(&ball, &pressure));
             if status == CONTACT_NORMAL_OK {
                 assert!(q == expected.1, "{effect} after {allowed} failures");

@@ -1,5 +1,5 @@
-//! After any allocation in a solve with adhesion has failed, the next solve on the same solver equals that of a new one: on small grids, and on large
-//! ones, which keep fewer vectors.
+//! Whichever allocation in a solve with adhesion fails, the next solve on the same solver equals that of a new one: on small grids, and on large
+//! ones, for which the library keeps fewer vectors.
 
 use contact_normal::adhesion::Law;
 use contact_normal::error::Error;
@@ -13,8 +13,7 @@ use super::spheres::Sphere;
 /// A sphere of radius 1 on a square of this half-width.
 const HALF_WIDTH: f64 = 3.0;
 
-/// The least size of an allocation that counts, or one byte per element if that is more. Allocations whose size does not depend on the grid are
-/// smaller.
+/// The least size of an allocation that counts, unless one byte per element is more. Allocations whose size does not depend on the grid are smaller.
 const LARGE: usize = 33_000;
 
 /// A sphere on m x m elements. Tabor's parameter is 1.2.
@@ -24,14 +23,14 @@ fn sphere(m: usize) -> Sphere {
     Sphere { adhesion, ..of }
 }
 
-/// Solves; returns the pressures.
+/// Solves, and returns the pressures.
 fn solve(solver: &mut Solver, scene: &Scene<'_>, options: &Options) -> Result<Vec<f64>, Error> {
     let (outcome, _) = solver.solve(scene, options, None, None)?;
     assert_eq!(outcome, Outcome::Converged);
     Ok(solver.state().p.clone())
 }
 
-/// Lets one allocation after the other fail until a solve succeeds; if there are many, only some of them.
+/// Lets one allocation after the other fail until a solve succeeds. If there are more than `all` of them, only some fail.
 fn fails_everywhere(m: usize, load: Load, all: usize) {
     let (sphere, options) = (sphere(m), Options { threads: 1, ..Options::default() });
     let scene = sphere.scene(load);

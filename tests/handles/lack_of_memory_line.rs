@@ -1,4 +1,4 @@
-//! Friction on long lines, whose rows or columns are as large as the grid: any lack of memory, also in plans of transforms, is a status.
+//! Friction on long lines, whose rows or columns are as large as the grid. Any lack of memory, also in plans of transforms, becomes a status.
 
 use std::ptr::{null, null_mut};
 
@@ -12,12 +12,12 @@ const N: usize = 3200;
 /// The least size of an allocation that counts: three quarters of a number per element. The arrays of coarser grids are smaller.
 const LARGE: usize = 8 * N * 3 / 4;
 
-/// Solves elastic cylinders along x or along y: the tangential problem with given pressures, or both problems.
+/// Solves for elastic cylinders along x or along y: the tangential problem if pressures are given, otherwise both problems. Returns the status.
 fn solve(sides: (usize, usize), modulus: f64, motion: i32, pressures: Option<&[f64]>) -> i32 {
     solve_by(CONTACT_NORMAL_METHOD_AUTO, sides, modulus, motion, pressures)
 }
 
-/// [`solve`] by any method.
+/// [`solve`] by a given method.
 fn solve_by(method: i32, (mx, my): (usize, usize), modulus: f64, motion: i32, pressures: Option<&[f64]>) -> i32 {
     let mut scene = initialised(contact_normal_scene_init);
     let mut friction = initialised(contact_normal_friction_init);
@@ -43,10 +43,11 @@ fn solve_by(method: i32, (mx, my): (usize, usize), modulus: f64, motion: i32, pr
     }
 }
 
-/// Solves with more and more memory, each time on a new thread, which has no plans. Returns the number of failures.
+/// Solves with more and more memory until a solve succeeds, each time on a new thread, which has no plans of transforms. Returns the number of
+/// failures.
 fn with_more_and_more(what: &str, run: impl Fn() -> i32 + Sync) -> usize {
     let mut lacks = 0;
-    // The steps are small relative to the largest array, of some 100 numbers per element.
+    // Memory grows in steps that are small relative to the largest array, which has some 100 numbers per element.
     let mut room = 16 * N;
     loop {
         release();
@@ -79,7 +80,7 @@ fn friction_on_a_line_without_memory_is_refused() {
     }
 }
 
-/// The normal problem of the same lines, and both problems in turns.
+/// The normal problem of the same lines, and both problems in turns. A lack of memory becomes a status here, too.
 #[test]
 fn a_line_that_rolls_without_memory_is_refused() {
     let _alone = alone();

@@ -1,4 +1,4 @@
-//! Stresses below the surface without memory: the status is OUT_OF_MEMORY whichever allocation fails, and the next call works.
+//! Stresses below the surface if memory is lacking: the status is OUT_OF_MEMORY whichever allocation fails, and the next call works.
 
 use std::ptr::null;
 
@@ -7,14 +7,14 @@ use super::call::initialised;
 use super::limited_memory::{self, release, until_enough};
 use contact_normal::ffi::*;
 
-/// Elements in each direction.
+/// The number of elements in each direction.
 const M: usize = 48;
 const N: usize = M * M;
 /// The second depth is near the surface, where stresses with periods also need images.
 const DEPTHS: [f64; 2] = [2.0, 0.25];
 const SENTINEL: f64 = -7.0;
 
-/// Asks for von Mises stresses and principal directions, which need all components: status, and what was written.
+/// Computes von Mises stresses and principal directions, which need all components, into `fields`. Returns the status.
 fn stresses(scene: &contact_normal_scene, load: &[f64], fields: &mut [Vec<f64>; 2]) -> i32 {
     fields.iter_mut().for_each(|field| field.fill(SENTINEL));
     let mut outputs = initialised(contact_normal_stress_outputs_init);
@@ -49,7 +49,7 @@ fn stresses_without_memory_are_refused_and_the_next_call_works() {
             assert!(status == CONTACT_NORMAL_OK || untouched, "{what}: refused, but written");
             status
         });
-        // Spectra of two loads, tables of kernels, fields of a depth.
+        // The allocations are those of the transforms of two loads, of the tables of kernels, and of the fields of a depth.
         assert!(failures >= 10, "{what}: {failures} allocations");
         assert!(found == expected, "{what}: other bits after {failures} failures");
     }

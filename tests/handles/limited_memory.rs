@@ -1,4 +1,4 @@
-//! The system's allocator with a limit for each thread.
+//! The system's allocator, with limits for each thread by which a test lets allocations fail.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -9,13 +9,13 @@ use contact_normal::ffi::{contact_normal_release, CONTACT_NORMAL_OK, CONTACT_NOR
 struct Limited;
 
 thread_local! {
-    /// The least number of bytes of an allocation that counts.
+    /// An allocation counts against the limits if it has at least this many bytes.
     static LARGE: Cell<usize> = const { Cell::new(usize::MAX) };
-    /// The number of those allocations that succeed.
+    /// How many more allocations of `LARGE` bytes or more succeed.
     static ALLOWED: Cell<u64> = const { Cell::new(u64::MAX) };
-    /// The bytes that may be held after an allocation that counts.
+    /// The bytes that the thread may hold after an allocation of `LARGE` bytes or more.
     static ROOM: Cell<i64> = const { Cell::new(i64::MAX) };
-    /// The bytes held.
+    /// The bytes that the thread holds.
     static HELD: Cell<i64> = const { Cell::new(0) };
 }
 
@@ -31,7 +31,7 @@ fn may_have(bytes: usize) -> bool {
     true
 }
 
-// SAFETY: the system's allocator, or null.
+// SAFETY: memory is that of the system's allocator, or null.
 unsafe impl GlobalAlloc for Limited {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if may_have(layout.size()) {
@@ -68,7 +68,7 @@ unsafe impl GlobalAlloc for Limited {
 #[global_allocator]
 static LIMITED: Limited = Limited;
 
-/// Calls `run` with `allowed` successful allocations of `large` bytes or more; all later ones fail.
+/// Calls `run` with `allowed` successful allocations of `large` bytes or more. All later ones of this size fail.
 pub fn with<R>(large: usize, allowed: u64, run: impl FnOnce() -> R) -> R {
     ALLOWED.set(allowed);
     LARGE.set(large);
@@ -83,8 +83,8 @@ pub fn release() {
     contact_normal_release();
 }
 
-/// Attempts a call with 0, 1, 2, ... allowed large allocations until it succeeds; beyond 24 in growing steps. Returns the number allowed. Each
-/// failure must be OUT_OF_MEMORY.
+/// Attempts a call with 0, 1, 2, ... allowed large allocations until it succeeds, beyond 24 in growing steps. Asserts that each failure is
+/// OUT_OF_MEMORY. Returns the number allowed.
 pub fn until_enough(what: &str, mut attempt: impl FnMut(u64) -> i32) -> u64 {
     let mut allowed = 0;
     loop {
@@ -99,7 +99,7 @@ pub fn until_enough(what: &str, mut attempt: impl FnMut(u64) -> i32) -> u64 {
     }
 }
 
-/// Calls `run` with room for `bytes` more bytes: allocations of `large` bytes or more beyond it fail.
+/// Calls `run` with room for `bytes` more bytes. Allocations of `large` bytes or more beyond this room fail.
 #[allow(dead_code)] // Only tests/handles uses it.
 pub fn within<R>(large: usize, bytes: i64, run: impl FnOnce() -> R) -> R {
     ROOM.set(HELD.get() + bytes);

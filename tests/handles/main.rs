@@ -19,13 +19,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use call::{last_error, Call, Through, MX, MY};
 use contact_normal::ffi::*;
 
-/// Tests run one at a time, because the demand for a panic is global.
+/// Lets tests run one at a time, because the demand for a panic is global.
 fn alone() -> MutexGuard<'static, ()> {
     static ALONE: Mutex<()> = Mutex::new(());
     ALONE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A handle that is freed with the test.
+/// A handle that is freed at the end of its test.
 struct Handle(*mut contact_normal_solver);
 
 impl Drop for Handle {
@@ -35,7 +35,7 @@ impl Drop for Handle {
     }
 }
 
-/// The pressures, deformed distances and displacements that the handle holds, and its contact area, or None.
+/// The pressures, deformed distances and displacements that the handle holds, and its contact area. `None` if it has no result.
 fn held(handle: &Handle) -> Option<(Vec<f64>, Vec<i32>)> {
     let n = MX * MY;
     let (mut numbers, mut contact) = (vec![-77.0; 3 * n], vec![-77; n]);
@@ -57,7 +57,7 @@ fn held(handle: &Handle) -> Option<(Vec<f64>, Vec<i32>)> {
 
 type Effect = fn(&mut Call);
 
-/// No effect, and each effect of a scene.
+/// Names of effects, and the changes of a call that add them; the first one adds none.
 const EFFECTS: [(&str, Effect); 7] = [
     ("none", |_| {}),
     ("influence", |c| _ = c.use_table()),
@@ -75,7 +75,7 @@ unsafe extern "C" fn cancel(_: *const contact_normal_progress, _: *mut libc::c_v
     1
 }
 
-/// The status of a refused solve, and the change that causes it.
+/// The expected status of a solve that must be refused, and the change that causes it.
 type Refused = (i32, Effect);
 
 const REFUSED: [Refused; 4] = [
@@ -102,7 +102,7 @@ fn new_call(effect: Effect, method: i32) -> Call {
     call
 }
 
-/// Solves with the handle: the result equals that of a new handle.
+/// Asserts that a solve with the handle has the result of a new handle.
 fn works(handle: &Handle, effect: Effect, method: i32, what: &str) {
     let (mut call, mut expected) = (new_call(effect, method), new_call(effect, method));
     assert_eq!(call.run(Through::SolverSolve, handle.0), (CONTACT_NORMAL_OK, String::new()), "{what}");
@@ -123,7 +123,7 @@ fn a_refused_solve_leaves_the_result_before() {
                 let mut call = new_call(effect, 0);
                 spoil(&mut call);
                 let (got, message) = call.run(Through::SolverSolve, handle.0);
-                // With limits any fixed area is refused.
+                // With pressure limits any fixed area is refused as unsupported.
                 let unsupported = name == "pressure_limit" && got == CONTACT_NORMAL_UNSUPPORTED;
                 assert!(got == status || unsupported && message.contains("FIXED"), "{name}: {got}, {message}");
             };
@@ -133,7 +133,7 @@ fn a_refused_solve_leaves_the_result_before() {
             let before = held(&handle);
             refuse();
             assert!(held(&handle) == before, "{name}: the result is another after status {status}");
-            // The result is a start for the next step.
+            // The kept result is an initial guess for the next step.
             let mut step = new_call(effect, 0);
             step.options.known.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
             assert_eq!(step.run(Through::SolverSolve, handle.0), (CONTACT_NORMAL_OK, String::new()), "{name}");
@@ -155,7 +155,7 @@ fn a_cancelled_solve_leaves_a_complete_result() {
             let (numbers, contact) = held(&handle).expect("the best iterate");
             let n = MX * MY;
             assert_eq!((&numbers[..n], &contact), (&call.pressure[..], &call.contact), "{name}");
-            // e = h - approach + u, of one iterate and not of two scenes.
+            // e = h - approach + u holds, so that all of them belong to one iterate and one scene.
             let approach = call.report.known.normal.approach;
             for i in 0..n {
                 let expected = call.h[i] - approach + numbers[2 * n + i];
@@ -218,7 +218,7 @@ fn nothing_that_a_scene_names_is_ignored() {
                 c.set_compliance(3, 2e-5);
             },
         ),
-        // A layer of another kind, with one compliance per element.
+        // A layer with one compliance per element in the place of a uniform one.
         (
             "layer",
             |c| c.use_layer().compliance = 1e-6,
@@ -256,7 +256,8 @@ unsafe extern "C" fn spoil(_: *const contact_normal_progress, user: *mut libc::c
     0
 }
 
-/// Only iterates reach limits that are a little above the largest pressure. The scene is then solved again, without them.
+/// The limits are a little above the largest pressure, so that only iterates reach them. The library then solves the scene again without limits,
+/// after callbacks have run.
 #[test]
 fn distances_are_read_before_a_callback_runs() {
     let _alone = alone();
@@ -281,7 +282,7 @@ fn distances_are_read_before_a_callback_runs() {
     }
 }
 
-/// The tractions of unlike bodies change the distances, so that the scene is solved in turns.
+/// The tractions of unlike bodies change the distances, so that the scene is solved in turns, between which callbacks run.
 #[test]
 fn distances_of_unlike_bodies_are_read_before_a_callback_runs() {
     let _alone = alone();

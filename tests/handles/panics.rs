@@ -7,7 +7,7 @@ use crate::call::{Call, Through};
 use contact_normal::ffi::*;
 use contact_normal::panics::BLOCKS;
 
-/// Makes a call whose product panics after `block` blocks; true if it panicked.
+/// Makes a call in which a product panics after `block` blocks. Returns whether it panicked.
 fn panics_at(block: i64, call: &mut Call, through: Through, handle: *mut contact_normal_solver) -> bool {
     BLOCKS.store(block, Ordering::Relaxed);
     let before = call.outputs();
@@ -60,7 +60,7 @@ fn a_panic_anywhere_is_a_status_and_the_next_call_works() {
     on_a_worker();
 }
 
-/// A grid that several threads share: a worker panics.
+/// A solve on a grid that several threads share, in which a worker panics.
 fn on_a_worker() {
     const M: usize = 160;
     let centre = |i: usize| i as f64 + 0.5 - 0.5 * M as f64;
@@ -85,10 +85,11 @@ fn on_a_worker() {
     }
 }
 
-/// The variable is set in the child process, which panics.
+/// The environment variable that is set in the child process, which panics.
 const CHILD: &str = "CONTACT_NORMAL_TEST_PANICS";
 
-/// In a child process, because the test harness captures the output of a test, and because the demand for a panic must not affect the test above.
+/// A panic writes nothing to stderr. This is tested in a child process, because the test harness captures the output of a test, and because the
+/// demand for a panic must not affect the test above.
 #[test]
 fn a_panic_is_not_announced() {
     if std::env::var_os(CHILD).is_some() {

@@ -1,5 +1,5 @@
-//! The promises of accuracies, on surfaces with exact solutions: some with which the estimates were developed, and some that had no part in it. Every
-//! run counts. `make accuracy` prints the same with more seeds.
+//! The promises about accuracy, tested on surfaces with exact solutions. The estimates were developed with some of these surfaces (`studied`); the
+//! others had no part in it (`held_back`). Every solve counts. `make accuracy` prints the same for more random seeds.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Load, Scene};
@@ -10,11 +10,11 @@ use crate::random::Random;
 use crate::surfaces::{held_back, studied, Surface, BODIES};
 
 const SIZES: [usize; 4] = [64, 100, 128, 200];
-/// Grids with few elements across the contact. A quantity is judged on those with enough elements for it.
+/// Grids with few elements across the contact. A quantity is judged only on those grids that have enough elements for it.
 const COARSE: [usize; 4] = [16, 24, 32, 48];
 
-/// On each surface at most 5 % of the estimates are below 0.3 of the true error, at most 10 % are unknown, and infinite peaks have no estimate. Only
-/// the peak of a cusp (r^1.5) may be unknown, because its pressure is nearly singular.
+/// Asserts for each surface: at most 5 % of the estimates are below 0.3 of the true error, at most 10 % are unknown, and infinite peaks have no
+/// estimate. Only the peak of a cusp (r^1.5) may be unknown more often, because its pressure is nearly singular.
 fn assert_estimates_hold(surfaces: judge::Surfaces, families: usize) {
     for ((quantity, family), estimates) in estimates(surfaces, 0..2, &COARSE) {
         let what = format!("{} of {family}, few elements: {estimates:?}", QUANTITIES[quantity]);
@@ -26,7 +26,7 @@ fn assert_estimates_hold(surfaces: judge::Surfaces, families: usize) {
     assert_eq!(found.len(), QUANTITIES.len() * families);
     for ((quantity, family), estimates) in found {
         let what = format!("{} of {family}: {estimates:?}", QUANTITIES[quantity]);
-        // Except for areas of a few contacts all have enough elements across.
+        // All quantities have enough elements across, except for the areas of a few contacts.
         assert!(estimates.runs >= 2 * 2, "{what}");
         assert!(estimates.low() <= 0.05, "{what}");
         assert!(estimates.unknown() <= 0.1 || family == "r^1.5" && quantity == 1, "{what}");
@@ -44,8 +44,9 @@ fn estimates_hold_on_surfaces_that_nothing_was_chosen_by() {
     assert_estimates_hold(held_back, 10);
 }
 
-/// Of the OK results at most 2 % miss the target, and none by more than a factor of 1.5. At least 80 % are within one doubling of the cheapest safe
-/// grid, and all have 6 elements across. Only a flat punch, of first order, may need more elements than allowed; no search stagnates.
+/// Asserts for the searches: of the results with status OK at most 2 % miss the target, and none by more than a factor of 1.5. At least 80 % are
+/// within one doubling of the cheapest grid that is safe, and all have 6 elements across. Only a flat punch, whose error is of first order, may need
+/// more elements than allowed. No search stagnates.
 fn assert_searches_hold(surfaces: judge::Surfaces, families: usize) {
     let all = searches(surfaces, 1..2);
     assert_eq!(all.len(), families * 2 * TARGETS.len());
@@ -64,7 +65,7 @@ fn assert_searches_hold(surfaces: judge::Surfaces, families: usize) {
     }
     ratios.sort_by(f64::total_cmp);
     assert!(50 * missed <= all.len(), "{missed} of {}", all.len());
-    // For at least 80 % the cheapest grid is known.
+    // The cheapest safe grid is known for at least 80 % of the searches.
     assert!(10 * ratios.len() >= 8 * all.len(), "{} of {}", ratios.len(), all.len());
     let near = ratios.iter().filter(|ratio| **ratio <= 4.0).count();
     assert!(10 * near >= 8 * ratios.len() && ratios[ratios.len() / 2] <= 4.0, "{ratios:?}");
@@ -111,7 +112,7 @@ fn targets_of_the_largest_pressure_and_the_area_are_kept() {
             "{name}: {}",
             off(measures.corrected_area, surface.area)
         );
-        // The force alone needs fewer elements.
+        // An accuracy of the force alone needs fewer elements.
         let alone = outcome_of(&surface, &Accuracy::new(1e-2));
         assert!(
             alone.solver.expect("a result").grid().len() < outcome.solver.expect("a result").grid().len(),
@@ -123,7 +124,8 @@ fn targets_of_the_largest_pressure_and_the_area_are_kept() {
     assert!(cone.reason.contains("estimate"), "{}", cone.reason);
 }
 
-/// At least 85 % of the rows name a grid within one doubling of the cheapest safe one, and at most 2 % a grid whose true error exceeds the target.
+/// At least 85 % of the rows of price lists name a grid within one doubling of the cheapest safe one. At most 2 % name a grid whose true error
+/// exceeds the target.
 #[test]
 fn prices_name_the_grid_that_does() {
     let (mut rows, mut near, mut beyond) = (0, 0, 0);
@@ -172,7 +174,7 @@ fn what_is_not_to_be_had_is_said() {
     assert_eq!((cone[0].obstacle, cone[0].grid), (Some(Obstacle::Singular), None));
     let rows = list(&surface("r^2"), none, Quantity::Force, &[1e-15, 1e-3]);
     assert_eq!((rows[0].obstacle, rows[1].obstacle), (Some(Obstacle::RoundOff), None));
-    // The number of samples, and so the grid, depends on the clock: the limits are below those of any grid.
+    // How many sample grids are solved, and so which grid is named, depends on the clock. The limits are below those of any grid.
     let (bytes, elements) = (8 * 16 * 16, 16 * 16);
     for (accuracy, obstacle) in [
         (Accuracy { max_bytes: bytes, ..none }, Obstacle::Memory),
@@ -181,13 +183,13 @@ fn what_is_not_to_be_had_is_said() {
     ] {
         let row = list(&surface("r^2"), accuracy, Quantity::Force, &[1e-3])[0];
         assert_eq!(row.obstacle, Some(obstacle), "{row:?}");
-        // The row still has the costs.
+        // A row with an obstacle still has the grid and its costs.
         let grid = row.grid.expect("a grid");
         assert!(row.seconds > Some(0.0) && row.bytes > bytes && grid.len() as u64 > elements, "{row:?}");
     }
 }
 
-/// Without a callback the list samples coarser grids from the array. A surface callback may cancel.
+/// Without a surface callback the price list takes coarser grids from the array. With one, the callback may cancel the list.
 #[test]
 fn a_price_list_needs_no_callback_and_obeys_one() {
     let surface = surface("r^2");
@@ -202,7 +204,7 @@ fn a_price_list_needs_no_callback_and_obeys_one() {
         false
     };
     let (_, from_callback) = list(Some(&mut write)).expect("a price list");
-    // On coarser grids means of the array are a little above the surface, so that an estimate near its target may miss it.
+    // The means of the array on coarser grids are a little above the surface, so that an estimate near its target may fall on either side.
     for (array, callback) in from_array.iter().zip(&from_callback) {
         let [array, callback] = [array, callback].map(|row| row.grid.expect("a grid").mx);
         assert!(array <= 2 * callback && callback <= 2 * array, "{array} {callback}");
@@ -212,8 +214,8 @@ fn a_price_list_needs_no_callback_and_obeys_one() {
     assert_eq!((stop, rows.len(), rows[0].grid), (Outcome::Cancelled, TARGETS.len(), None));
 }
 
-/// The row of a grid that the list has solved itself has the products of that solve. This includes direct solves, which report a residual at their
-/// end only.
+/// If the list itself has solved the grid of a row, the row has the products of that solve. This includes direct solves, which report a residual only
+/// at their end.
 #[test]
 fn a_row_has_the_products_of_its_grid() {
     let grid = Grid::new(16, 16, 1.0 / 16.0, 1.0 / 16.0).expect("a grid");

@@ -1,5 +1,5 @@
-//! An accuracy instead of a grid: the true error of the ellipse meets the target, limits end the refinement with the best result, callbacks cancel
-//! it, and the message says what cannot be reached.
+//! Solves to a given accuracy instead of on a given grid. The true error of the ellipse meets the target; limits end the refinement with the best
+//! result so far; callbacks cancel it; and a message says what cannot be reached.
 
 use crate::paper as case;
 
@@ -10,8 +10,8 @@ use contact_normal::solver::{
     cost_of_accuracy, solve_to_accuracy, Accuracy, Method, Options, Outcome, Quantity, Refinement,
 };
 
-/// The largest allowed ratio of true error and target, if the target is met: the estimate may be too small by this factor (the effectivity of error
-/// estimates).
+/// The largest allowed ratio of the true error to the target if the target is met: an estimate may be too small by this factor (1 over the
+/// effectivity of an error estimate).
 const EFFECTIVITY: f64 = 3.0;
 const START: usize = 16;
 
@@ -35,7 +35,7 @@ fn by_approach(accuracy: Accuracy) -> Refinement {
     solved(Load::Approach(case::APPROACH), accuracy, &Options::default())
 }
 
-/// Asserts a converged result on 16 x 16 elements.
+/// Asserts that the result is the converged one on the first grid of 16 x 16 elements.
 fn assert_start_is_kept(outcome: &Refinement) {
     assert_eq!(grid_of(outcome).mx, START, "{}", outcome.reason);
     // With 16 x 16 elements the error of the force is some percent (tests/problems/hertz.rs).
@@ -61,9 +61,9 @@ fn the_true_error_meets_the_target() {
             println!("{target:e} {load:?}: {reached:e} estimated, {error:e} true, {} x {}", grid.mx, grid.my);
             assert!(reached <= target);
             assert!(error <= EFFECTIVITY * target, "{target:e}, {load:?}: {error:e} on {} x {}", grid.mx, grid.my);
-            // Over the same rectangle; powers of two are exact.
+            // The grid covers the same rectangle. Its sides are multiplied by powers of two, which are exact.
             assert_eq!((grid.mx as f64 * grid.dx, grid.my as f64 * grid.dy), (20.0, 12.0));
-            // One row for each grid of full multigrid, the finest one last.
+            // The ledger has one row for each grid of full multigrid, the finest one last.
             let ledger = outcome.solver.as_ref().expect("a result").ledger();
             let last = ledger.last().expect("rows");
             assert!(ledger.len() >= 2, "{ledger:?}");
@@ -80,7 +80,7 @@ fn a_finer_target_takes_a_finer_grid() {
 
 #[test]
 fn a_surface_callback_gives_what_a_refined_parabola_gives() {
-    // The cubics reproduce a parabola up to round-off, so that only the last digits differ.
+    // The cubics that refine the array reproduce a parabola up to round-off, so that only the last digits differ.
     let accuracy = Accuracy::new(1e-3);
     let array = by_approach(accuracy);
     let mut asked = Vec::new();
@@ -89,19 +89,19 @@ fn a_surface_callback_gives_what_a_refined_parabola_gives() {
         h.copy_from_slice(&case::undeformed_distance(grid.mx));
         false
     };
-    // The array is not read.
+    // If there is a callback, the array of the scene is not read.
     let scene = case::scene(START, &[]);
     let outcome =
         solve_to_accuracy(&scene, &Options::default(), &accuracy, Some(&mut surface), None).expect("a solvable scene");
     assert_eq!((outcome.stop, grid_of(&outcome)), (Outcome::Converged, grid_of(&array)));
     assert_eq!((asked.first(), asked.last()), (Some(&START), Some(&grid_of(&outcome).mx)));
     let (found, other) = (outcome.report.measures.force, array.report.measures.force);
-    // Twice the tolerance of the residual, 1e-6.
+    // Two solves, each with a residual of 1e-6.
     assert!((found / other - 1.0).abs() < 2e-6, "{found} and {other}");
 }
 
 #[test]
-fn limits_end_it_with_the_best_result() {
+fn limits_end_a_search_with_the_best_result() {
     let far = Accuracy::new(1e-6);
     let at_start: [(Accuracy, &str); 3] = [
         (Accuracy { max_elements: (2 * START * 2 * START - 1) as u64, ..far }, "max_elements"),
@@ -137,7 +137,7 @@ fn callbacks_cancel_and_what_was_solved_is_kept() {
     let outcome = solve_to_accuracy(&scene, &options, &accuracy, Some(&mut at_once), None).expect("a solvable scene");
     assert!(outcome.stop == Outcome::Cancelled && outcome.solver.is_none() && outcome.reached.is_none());
 
-    // 16 x 16 elements are also a coarser grid of the next solve, which is the one that is cancelled.
+    // Progress on 16 x 16 elements comes from the first solve, and from coarse grids of the second one. Only the second solve is cancelled.
     let mut progress = |told: &contact_normal::solver::Progress| told.mx > START;
     let outcome = solve_to_accuracy(&scene, &options, &accuracy, None, Some(&mut progress)).expect("a solvable scene");
     assert_eq!(outcome.stop, Outcome::Cancelled);
@@ -156,12 +156,12 @@ fn a_target_below_round_off_says_the_best_reached() {
 }
 
 #[test]
-fn a_solve_that_does_not_converge_ends_it() {
+fn a_solve_that_does_not_converge_ends_a_search() {
     let options = Options { max_cycles: 1, method: Method::Norm, ..Options::default() };
     let outcome = solved(Load::Approach(case::APPROACH), Accuracy::new(1e-3), &options);
     assert_eq!(outcome.stop, Outcome::IterationLimit);
     assert!(outcome.reason.contains("max_cycles was reached on 16 x 16"), "{}", outcome.reason);
-    // The estimated error includes that by the residual.
+    // The estimated error includes the error that the residual causes.
     let residual = outcome.report.measures.certificate.residual;
     assert!(outcome.reached.is_some_and(|reached| reached >= residual) && residual > 1e-6);
 }
@@ -176,7 +176,7 @@ fn no_contact_is_no_error() {
 }
 
 #[test]
-fn elements_without_surface_stay_so() {
+fn elements_without_surface_stay_excluded_on_finer_grids() {
     let mut h = case::undeformed_distance(START);
     // The contact area has a hole in its middle.
     h[START * 7 + 8] = f64::INFINITY;
@@ -214,9 +214,9 @@ fn a_solve_that_takes_too_long_is_dropped() {
 }
 
 #[test]
-fn without_an_estimate_it_is_given_up() {
-    // A pin of one element, the last of a block of four in both directions. Samples on coarser grids, in the middle of blocks, miss it, so that there
-    // is no contact.
+fn a_search_without_an_estimate_is_given_up() {
+    // A pin of one element, which is the last of a block of 4 x 4 elements. Coarser grids sample the middle of blocks and miss the pin, so that they
+    // have no contact.
     let mut surface = |grid: &Grid, h: &mut [f64]| {
         h.fill(1.0);
         h[grid.index(grid.mx / 2 + 3, grid.my / 2 + 3)] = 0.0;
@@ -226,14 +226,14 @@ fn without_an_estimate_it_is_given_up() {
     let outcome = solve_to_accuracy(&scene, &Options::default(), &Accuracy::new(1e-2), Some(&mut surface), None)
         .expect("a scene");
     assert_eq!((outcome.stop, outcome.reached), (Outcome::Stagnated, None), "{}", outcome.reason);
-    // Three finer grids without an estimate end the search.
+    // The search ends after three finer grids without an estimate.
     assert_eq!(grid_of(&outcome).mx, 128);
     assert!(outcome.reason.contains("no estimate") && outcome.reason.contains("not known"), "{}", outcome.reason);
 }
 
-/// Lines in plane strain, one element across, with two periods. Finer grids keep the one element, across which nothing varies. The pressures are
-/// those of Westergaard (J. Appl. Mech. 6, 1939): the largest is `2 sqrt(pm p*)` for a mean of pm, with `p* = pi E*` times the height over the length
-/// of the wave.
+/// A wave in plane strain, on grids with two periods that are one element wide. Finer grids keep the one element, across which nothing varies. The
+/// pressures are those of Westergaard (J. Appl. Mech. 6, 1939): the largest is `2 sqrt(pm p*)` for a mean of pm, with `p* = pi E*` times the height
+/// over the length of the wave.
 #[test]
 fn a_line_in_plane_strain_keeps_its_one_element() {
     let (amplitude, across, part) = (0.01, 0.5, 0.3);
@@ -256,7 +256,7 @@ fn a_line_in_plane_strain_keeps_its_one_element() {
         let (along, one) = on(&grid_of(&found));
         assert!(along >= 80 && one == 1, "{along} x {one}");
         let off = found.report.measures.max_pressure / (2.0 * full * part.sqrt()) - 1.0;
-        // The element at the top has its mean pressure, which is smaller by a part of about `(pi/along)^2/6`.
+        // The pressure of the element at the top is a mean over it, smaller than the peak by a part of about `(pi/along)^2/6`.
         assert!(off.abs() <= 2e-3, "{off:e} on {along}");
         let wanted = (Quantity::Force, &[1e-2, 1e-3, 1e-4][..]);
         let (_, rows) = cost_of_accuracy(&scene, &options, &Accuracy::new(0.0), wanted, None, None).unwrap();

@@ -1,4 +1,5 @@
-//! Batches: the bits of one solve after the other, for any number of workers and any order. A problem that fails does not affect the others.
+//! A batch has the bits of the same solves one after the other, for any number of workers and any order. A problem that fails does not affect the
+//! others.
 
 use std::ptr::{null, null_mut};
 
@@ -9,7 +10,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Problem, Solver};
 
-/// Large enough for windows.
+/// The grid is large enough for products on a window around the contact.
 const M: usize = 72;
 const STEEL: Bodies = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.28; 2] };
 
@@ -17,7 +18,7 @@ fn grid() -> Grid {
     Grid::new(M, M, 0.25, 0.2).expect("a grid")
 }
 
-/// Balls of several sizes, some wavy, four of them at each of several places, so that the window of one fits the next.
+/// Balls of several sizes, some of them wavy. Four successive ones have the same place, so that the window of one fits the next.
 fn surface(k: usize) -> Vec<f64> {
     let place = (k / 4) as f64;
     let (centre_x, centre_y) = (M as f64 * (0.4 + 0.1 * place), M as f64 * (0.6 - 0.05 * place));
@@ -62,7 +63,7 @@ fn a_batch_has_the_bits_of_one_solve_after_the_other() {
     let count = 12;
     let h: Vec<Vec<f64>> = (0..count).map(surface).collect();
     let pressure = vec![100.0; M * M];
-    // The guess has contact in the middle of the grid only, where all balls penetrate.
+    // The guess has contact in the middle of the grid, where all balls penetrate.
     let contact: Vec<bool> = (0..M * M).map(|i| (i % M).abs_diff(M / 2) < 9 && (i / M).abs_diff(M / 2) < 7).collect();
     let guess = Guess { pressure: &pressure, contact: &contact };
     let cold = Options::default();
@@ -86,7 +87,7 @@ fn a_batch_has_the_bits_of_one_solve_after_the_other() {
         for threads in [1, 2, 3] {
             let options = Options { threads, ..options };
             let mut solver = Solver::new(&problems[0].scene, &options).expect("a solver");
-            // Twice: in the second batch the workers have solved before.
+            // Solved twice: in the second batch the workers already have solved other problems.
             for _ in 0..2 {
                 let batch = solver
                     .solve_batch(&problems, &options, |_, outcome, state| {
@@ -134,7 +135,7 @@ struct Batch {
 
 const UNTOUCHED: f64 = -77.0;
 
-/// `T` as its `_init` leaves it.
+/// A `T` with the defaults that its `_init` function writes.
 fn initialised<T>(init: unsafe extern "C" fn(*mut T)) -> T {
     let mut value = std::mem::MaybeUninit::uninit();
     // SAFETY: `_init` fills a whole struct.

@@ -1,5 +1,5 @@
-//! Soft surfaces: the displacements by the limit are a small part of the distances between elements. The heights decide which elements are at their
-//! limit, as long as a method does not cycle between them. The certificates are computed by direct sums.
+//! Soft surfaces with a pressure limit: displacements by pressures at the limit are small relative to differences of height. So the heights decide
+//! which elements are at their limit, as long as a method does not cycle between them. The certificates are recomputed by direct sums.
 
 use crate::limits_that_differ::assert_conditions;
 use crate::periodic_by_approach::rough;
@@ -27,7 +27,8 @@ fn surface(kind: usize, m: usize, random: &mut Random) -> Vec<f64> {
     h
 }
 
-/// They take at most 15 products on average. Displacements of a nearly flat top decide about more elements than the start from sorted heights does.
+/// The solves take at most 15 products on average. On a nearly flat top the displacements decide which elements are at their limit, more often than
+/// the initial guess from sorted heights does.
 #[test]
 fn soft_surfaces_are_solved_from_their_heights() {
     let (random, mut products) = (&mut Random::new(11), 0.0);
@@ -36,7 +37,7 @@ fn soft_surfaces_are_solved_from_their_heights() {
         let (dx, dy) = (random.between(0.3, 3.0), random.between(0.3, 3.0));
         let grid = Grid::new(m, m, dx, dy).unwrap();
         let h = surface(k % 3, m, random);
-        // The own displacement of an element at its limit is about 3 dx p.
+        // An element at its limit displaces itself by about 3 dx p.
         let limit = random.decades(1e-7, 1e-4) / dx;
         let limits: Vec<f64> =
             h.iter().map(|_| if k % 2 == 0 { limit } else { limit * random.decades(1.0, 5.0) }).collect();
@@ -61,15 +62,15 @@ fn soft_surfaces_are_solved_from_their_heights() {
 /// The number of elements along a side.
 const M: usize = 32;
 
-/// Waves along x. Along y each element is higher than the last by `last_bits` units of round-off.
+/// Heights with waves along x. Along y each element is higher than the one before by `last_bits` units of round-off.
 fn waves(seed: usize, last_bits: f64) -> Vec<f64> {
     let height =
         |k: usize| (0.9 * (k % M) as f64 + seed as f64).sin() + 1.5 + last_bits * f64::EPSILON * (k / M) as f64;
     (0..M * M).map(height).collect()
 }
 
-/// Bodies are so stiff, or limits so small, that all displacements are below the rounding of the distances. The contact area is then the bearing
-/// area, which follows from the sorted distances (Abbott & Firestone 1933).
+/// The bodies are so stiff, or the limits so small, that all displacements are below the round-off of the distances. The contact area is then the
+/// bearing area, which follows from the sorted distances (Abbott & Firestone 1933).
 #[test]
 fn the_lowest_elements_are_at_their_limit() {
     let grid = Grid::new(M, M, 1.0, 1.0).unwrap();
@@ -87,7 +88,7 @@ fn the_lowest_elements_are_at_their_limit() {
             assert_eq!(stop, Outcome::Converged, "{what}: {report:?}");
             let mut sorted = h.clone();
             sorted.sort_by(f64::total_cmp);
-            // The element that carries the rest of the force; the certificate allows two roundings of the approach.
+            // `depth` is the distance of the element that carries the rest of the force. The certificate allows two rounding errors of the approach.
             let (depth, rounding) = (sorted[700], 4.0 * f64::EPSILON * sorted[700]);
             for (h, p) in h.iter().zip(&solver.state().p) {
                 let holds = if *h < depth - rounding {

@@ -1,4 +1,4 @@
-//! Elements at their pressure limit are in contact: in searches, in corrected areas, and for each method.
+//! Elements at their pressure limit are in contact. This matters in searches for an accuracy, in corrected contact areas, and for each method.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::Table;
@@ -20,7 +20,7 @@ fn limited<'a>((grid, h): &'a (Grid, Vec<f64>), load: Load, limit: f64) -> Scene
     Scene { pressure_limit: Some(PressureLimit(Each::Uniform(limit))), ..Scene::new(*grid, h, BODIES, load) }
 }
 
-/// All elements of a punch are at their limit: the force is the limit times the area, and no finer grid is needed.
+/// All elements of a punch are at their limit. The force is the limit times the area, so that no finer grid is needed.
 #[test]
 fn a_search_ends_where_all_of_the_contact_is_at_its_limit() {
     let grid = Grid::new(32, 32, 1.0, 1.0).expect("a grid");
@@ -35,8 +35,8 @@ fn a_search_ends_where_all_of_the_contact_is_at_its_limit() {
     assert!((found.report.measures.force / 0.256 - 1.0).abs() < 1e-12);
 }
 
-/// The corrected area is that of the elements in contact, less a part of an element for each change of contact along rows and columns: the same part
-/// for any limit.
+/// The corrected area is that of the elements in contact, less a part of an element for each change between contact and gap along rows and columns.
+/// The part does not depend on the limit.
 #[test]
 fn corrected_areas_count_elements_at_their_limit() {
     let part = |m: usize, load: Load, limit: f64| {
@@ -89,7 +89,8 @@ fn each_method_solves_a_force_beside_limits() {
     }
 }
 
-/// Steep rough surfaces, whose coefficients lean to one side: NORM found no way from p = 0 to the elements that end at their limit, by force. By approach it did.
+/// Steep rough surfaces with unsymmetric coefficients. From p = 0 and with a given force, NORM once failed to reach the elements that end at their
+/// limit, although it did with a given approach.
 #[test]
 fn norm_solves_forces_beside_limits_with_coefficients_that_are_not_symmetric() {
     let m = 16;
@@ -124,7 +125,7 @@ fn norm_solves_forces_beside_limits_with_coefficients_that_are_not_symmetric() {
     assert!(solved >= 9, "{solved}");
 }
 
-/// With a limit there is no estimate of the error, and so no tolerance from it. Nor is there one from the start of NORM.
+/// With a pressure limit there is no estimate of the error, and so `error_ratio` cannot loosen the tolerance. Neither can NORM's start.
 #[test]
 fn no_tolerance_follows_from_an_error_that_is_not_known() {
     let surface = bowl(64);

@@ -1,5 +1,5 @@
-//! The bill of effects: its changes compared with solves of the whole grid with and without each effect, its verdicts, and the effects that it leaves
-//! out.
+//! The bill of effects tells how much each effect of a scene changes a quantity. Its changes are compared with solves on the whole grid, with and
+//! without each effect. Also tested: its verdicts, and the effects that it leaves out.
 
 use contact_normal::adhesion::{Law, Start};
 use contact_normal::error::Error;
@@ -31,21 +31,21 @@ pub fn plain(h: &[f64]) -> Scene<'_> {
 }
 
 pub fn bill(scene: &Scene<'_>, target: f64, wanted: &[Quantity]) -> Vec<BillRow> {
-    // With this time the grids do not depend on the machine.
+    // With this much time the bill's choice of grids does not depend on the machine.
     let asked = BillOptions { max_seconds: 1e3, ..BillOptions::new(target) };
     let (stop, rows) = effects_bill(scene, &Options::default(), &asked, wanted, None).expect("a bill");
     assert_eq!(stop, Outcome::Converged);
     rows
 }
 
-/// Values on the whole grid.
+/// The values of the quantities on the whole grid.
 fn solved(scene: &Scene<'_>, wanted: &[Quantity]) -> Vec<f64> {
     let options = Options { tolerance: 1e-9, ..Options::default() };
     let (_, rows) = quantities(scene, &options, wanted, 0, None).expect("a solvable scene");
     rows.iter().map(|row| row.value.unwrap_or(0.0)).collect()
 }
 
-/// All effects that can be combined, with random sizes.
+/// A scene with one of the combinations of effects, each of random size.
 fn with_effects<'a>(h: &'a [f64], patch: &'a [i32], random: &mut Random) -> Scene<'a> {
     let mut scene = plain(h);
     let size = 10f64.powf(-3.0 + 4.0 * random.uniform());
@@ -84,7 +84,7 @@ fn changes_and_verdicts_are_those_of_the_whole_grid() {
             let q = wanted.iter().position(|quantity| *quantity == row.quantity).expect("asked for");
             let change = solved(&without, &wanted)[q] - before[q];
             let (value, found) = (row.value.expect("a value"), row.change.expect("a change"));
-            // Here the last grid is the whole one: the differences are by the tolerance, at most a hundredth of the target.
+            // Here the bill's last grid is the whole grid. The differences are due to tolerances, which are at most a hundredth of the target.
             let allowed = 2e-4 * before[q].abs();
             assert!((found - change).abs() <= allowed, "{seed} {row:?}: {change:e}");
             assert!((value - before[q]).abs() <= allowed, "{seed} {row:?}");
@@ -99,7 +99,7 @@ fn changes_and_verdicts_are_those_of_the_whole_grid() {
     assert!(decided > 40, "{decided}");
 }
 
-/// With the default time limit, on a grid much larger than those of the bill.
+/// With the default time limit, the bill of a large scene is computed on much smaller grids.
 #[test]
 fn small_grids_tell_of_the_whole_one() {
     let m = 256;
@@ -114,7 +114,7 @@ fn small_grids_tell_of_the_whole_one() {
     for (q, row) in rows.iter().enumerate() {
         let (change, error) = (row.change.expect("a change"), row.error.expect("an error"));
         let truth = without[q] - with[q];
-        // The residual of the whole grid's solves is 1e-9.
+        // The solves on the whole grid have a residual of 1e-9, hence the 1e-6.
         assert!((change - truth).abs() <= 1.5 * error + 1e-6 * with[q].abs(), "{row:?}: {truth:e}");
         assert!(row.seconds[0] > 0.0 && row.bytes[0] > 1e6, "{row:?}");
     }
@@ -140,7 +140,7 @@ fn like_bodies_in_the_place_of_unlike_ones_have_their_compliances() {
 #[test]
 fn a_thin_coating_is_a_layer() {
     let h = ball();
-    // A hundredth of an element thick, and so soft that it has an effect.
+    // A coating that is a hundredth of an element thick, and so soft that it has an effect.
     let scene = Scene { coating: Some(Coating::of_body_1(5e-4, 40.0, 0.3)), ..plain(&h) };
     let rows = bill(&scene, 1e-2, &WANTED);
     let verdicts = |omission: Omission| -> Vec<Verdict> {
@@ -148,7 +148,7 @@ fn a_thin_coating_is_a_layer() {
     };
     assert!(verdicts(Omission::Coating).contains(&Verdict::Needed), "{rows:#?}");
     assert_eq!(verdicts(Omission::CoatingAsLayer), vec![Verdict::Negligible; 3], "{rows:#?}");
-    // Both rows replace the coating, so that they are no pair.
+    // Two rows replace the same coating, so that they are not listed as a pair of effects.
     assert!(rows.iter().all(|row| row.other.is_none()));
 }
 
@@ -201,7 +201,8 @@ fn what_is_neglected_changes_less_than_the_target() {
     assert!(left_out >= 6, "{left_out}");
 }
 
-/// The peak of a cone grows with the number of elements: small grids do not reach a limit that the whole grid reaches.
+/// The peak of a cone grows with the number of elements, so that pressures on small grids do not reach a limit that those on the whole grid reach.
+/// The bill must not call this limit negligible.
 #[test]
 fn a_pressure_limit_stays() {
     let h: Vec<f64> = ball().iter().map(|h| h.sqrt()).collect();
@@ -216,7 +217,7 @@ fn a_pressure_limit_stays() {
 
 #[test]
 fn a_period_that_does_not_matter_is_negligible() {
-    // The contact is a hundredth of the grid long in each direction.
+    // The contact is a hundredth of the grid's length in each direction, so that the images of a period hardly matter.
     let h: Vec<f64> = ball().iter().map(|h| 400.0 * h).collect();
     let scene = Scene { period: Some(Period { x: false, y: true }), ..plain(&h) };
     let verdicts =
@@ -229,8 +230,8 @@ fn a_period_that_does_not_matter_is_negligible() {
     assert_eq!((stop, rows[0].verdict), (Outcome::Converged, Verdict::Needed), "{rows:?}");
 }
 
-/// A law and a plastic layer have their own rows. They are needed where slips are fast and where tractions exceed the yield limit, and their changes
-/// are those of the whole grid.
+/// A friction law and a plastic layer have rows of their own. The law is needed where slips are fast, the layer where tractions exceed the yield
+/// limit. Their changes are those of the whole grid.
 #[test]
 fn laws_of_friction_and_layers_that_yield_are_in_the_bill() {
     let h = ball();
@@ -260,7 +261,7 @@ fn laws_of_friction_and_layers_that_yield_are_in_the_bill() {
             let row = of(&rows, omission);
             assert_eq!(row.verdict, verdict, "{row:?}");
             let change = solved(&omission.leave_out(&scene), &wanted)[0] - before;
-            // The tolerance is a hundredth of the target.
+            // The bill's tolerance is a hundredth of its target, here 2e-4.
             assert!((row.change.expect("a change") - change).abs() <= 2e-4 * before.abs(), "{row:?} {change:e}");
         }
         let pair = |row: &&BillRow| (row.omission, row.other) == (Omission::FrictionLaw, Some(Omission::FrictionLayer));
@@ -269,7 +270,7 @@ fn laws_of_friction_and_layers_that_yield_are_in_the_bill() {
     }
 }
 
-/// E* is 65000. A work of 1 holds a pull of 1.5 pi w R = 236, compared with a load of 1100. The effect of a work of 1e-7 is below 1 %.
+/// E* is 65000. With a work of adhesion of 1 the pull-off force is 1.5 pi w R = 236, beside a load of 1100. A work of 1e-7 has an effect below 1 %.
 #[test]
 fn adhesion_is_needed_where_it_is_strong() {
     let h = ball();
@@ -294,7 +295,7 @@ fn adhesion_is_needed_where_it_is_strong() {
     assert!(change > 0.05, "without attraction the force of an approach is larger: {change}");
     let weak = bill(&sticky(1e-7, 0.005), 1e-2, &WANTED);
     assert!(weak.iter().all(|row| row.verdict == Verdict::Negligible), "{weak:?}");
-    // Adhesion has its own kind of result, so that it is not left out.
+    // A solve with adhesion has another type of result, so that adhesion is never left out.
     let neglected = Neglected::of(&sticky(1e-7, 0.005), &Options::default(), 1e-2, None).expect("a scene");
     assert!(neglected.omissions.is_empty());
     let refused = effects_bill(&sticky(1.0, 0.0), &Options::default(), &BillOptions::new(0.1), &WANTED, None);

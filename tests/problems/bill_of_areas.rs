@@ -1,4 +1,5 @@
-//! An area whose change small grids do not show: there no element enters or leaves the contact, but on the scene's grid some do.
+//! A contact area whose change does not show on small grids, because no element enters or leaves the contact there. On the scene's grid some elements
+//! do.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Each, Friction, Layer, Load, Motion, Prescribed, Scene};
@@ -7,8 +8,8 @@ use contact_normal::solver::{effects_bill, quantities, BillOptions, Omission, Op
 const M: usize = 256;
 const TARGET: f64 = 1e-2;
 
-/// On small grids the layer changes nothing, to the last bit; on the scene's grid it changes the area by 2.7 %. With more seconds the bill reaches
-/// the scene's grid, with fewer it solves one grid only: neither verdict is negligible.
+/// On small grids the layer changes no bit of the area, on the scene's grid it changes the area by 2.7 %. With more seconds the bill reaches the
+/// scene's grid, with fewer it solves one small grid only. In neither case may it call the layer negligible.
 #[test]
 fn an_area_that_no_element_of_small_grids_changes_is_not_decided() {
     let grid = Grid::new(M, M, 1.0 / M as f64, 1.0 / M as f64).expect("a grid");

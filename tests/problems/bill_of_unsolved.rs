@@ -1,4 +1,5 @@
-//! Bills of effects whose last grid is not solved with all effects, or without one: the change of a coarser grid does not replace its change.
+//! Bills of effects whose last grid is not solved, with all effects or without one of them. The bill must not report the change on a coarser grid
+//! instead.
 
 use contact_normal::grid::Grid;
 use contact_normal::progress::Progress;
@@ -28,8 +29,8 @@ fn asked(target: f64) -> BillOptions {
     BillOptions { max_seconds: 1e3, ..BillOptions::new(target) }
 }
 
-/// Ten cycles solve 64 x 64 elements with the layer, but not without it. They solve 16 x 16 elements in both cases, with a change of 759.7 and a
-/// force of 13235. On 64 x 64 elements the change is 1843.
+/// Ten cycles suffice on 64 x 64 elements with the layer, but not without it. On 16 x 16 elements they suffice in both cases, with a change of 759.7
+/// of a force of 13235. On 64 x 64 elements the change is 1843.
 #[test]
 fn a_change_of_a_coarser_grid_is_no_change_of_the_last() {
     let h = rough_ball();
@@ -52,7 +53,8 @@ fn a_change_of_a_coarser_grid_is_no_change_of_the_last() {
     }
 }
 
-/// A bill that is cancelled on the scene's grid, after the solve with the layer, is that of the grid with half the elements.
+/// If a bill is cancelled on the scene's grid, after the solve with the layer, it reports the changes on the grid with half the elements in each
+/// direction.
 #[test]
 fn a_cancelled_bill_is_that_of_the_grid_before() {
     let h = rough_ball();
@@ -75,7 +77,7 @@ fn a_cancelled_bill_is_that_of_the_grid_before() {
         rows[0].value.expect("a force")
     };
     let (with, without) = (on_half(&scene), on_half(&Omission::Layer.leave_out(&scene)));
-    // Both solves have a tolerance of 1e-6.
+    // The solves have a tolerance of 1e-6, of which 1e-4 is ample.
     assert!((rows[0].value.expect("a force") / with - 1.0).abs() < 1e-4, "{rows:?} {with}");
     assert!((rows[0].change.expect("a change") - (without - with)).abs() < 1e-4 * with, "{rows:?} {without}");
     // Bytes are predicted for the scene's grid, here from a grid with a quarter of the elements.

@@ -1,4 +1,4 @@
-//! Values that are exactly 0 without contact: quantities, price lists and searches agree on them. Also price lists of scenes that are not solved.
+//! Without contact some values are exactly 0: quantities, price lists and searches agree on this. Also price lists of scenes that are not solved.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Each, Friction, Layer, Load, Scene};
@@ -45,20 +45,20 @@ fn values_of_bodies_apart_are_exact() {
     for row in rows {
         assert_eq!((row.value, row.error, row.lack), (Some(0.0), Some(0.0), None), "{row:?}");
     }
-    // The mean gap is not exact: its error follows from the grids.
+    // The mean gap of bodies apart has an error, which follows from the differences between grids.
     let (_, rows) = quantities(&apart(&h), &Options::default(), &[Quantity::MeanGap], 1, None).expect("rows");
     assert_eq!((rows[0].error, rows[0].lack), (None, Some(Lack::OneGrid)));
     assert!(rows[1].error.is_some_and(|error| error > 0.0), "{rows:?}");
 }
 
-/// One element lies lower than all others.
+/// A surface whose only high point is one element, 0.1 above the rest.
 fn spike() -> Vec<f64> {
     let mut h = vec![0.1; M * M];
     h[10 * M + 10] = 0.0;
     h
 }
 
-/// On the grid of half the elements the spike has a quarter of its depth and does not touch: 0 is no exact value there.
+/// On the grid with half the elements in each direction the spike has a quarter of its depth and does not touch. There 0 is not the exact value.
 #[test]
 fn a_grid_that_misses_the_contact_has_no_error() {
     let h = spike();
@@ -72,8 +72,8 @@ fn a_grid_that_misses_the_contact_has_no_error() {
     assert!(rows[2..].iter().all(|row| row.value.is_some_and(|value| value > 0.0)), "{rows:?}");
 }
 
-/// The bill of the spike is that of the scene's grid. An element of side d has `u = 4 ln(1 + sqrt 2) p d/(pi E*)` at its centre, 0.0786 p; the layer
-/// adds 0.08 p.
+/// The bill of the spike is computed on the scene's grid, because coarser grids miss the contact. An element of side d displaces its centre by `u = 4
+/// ln(1 + sqrt 2) p d/(pi E*)`, 0.0786 p; the layer adds 0.08 p.
 #[test]
 fn a_bill_counts_no_grid_that_misses_the_contact() {
     let h = spike();
@@ -102,7 +102,7 @@ fn prices_of_bodies_apart_are_those_of_their_grid() {
             assert!(row.seconds > Some(0.0) && row.bytes > 0, "{quantity:?}: {row:?}");
         }
     }
-    // The caller's limits hold, and a quantity without a value has an obstacle.
+    // The caller's limits apply here, too, and a quantity without a value has an obstacle.
     let wanted = (Quantity::Force, &[1e-2][..]);
     let accuracy = Accuracy { max_elements: 100, ..Accuracy::new(0.1) };
     let (_, rows) = cost_of_accuracy(&scene, &Options::default(), &accuracy, wanted, None, None).expect("a list");
@@ -111,7 +111,7 @@ fn prices_of_bodies_apart_are_those_of_their_grid() {
     assert_eq!((rows[0].obstacle, rows[0].grid), (Some(Obstacle::Singular), None), "{rows:?}");
 }
 
-/// With one iteration no grid is solved.
+/// If only one iteration is allowed, no grid of the price list is solved, and the list must say so.
 #[test]
 fn a_price_list_without_a_solved_grid_says_so() {
     let h = ball();

@@ -1,4 +1,4 @@
-//! Coatings with two periods: coefficients against sums over waves, the compression by the mean pressure, thin coatings.
+//! Coatings in scenes with two periods: coefficients compared with sums over waves, the compression by the mean pressure, and thin coatings.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -19,8 +19,8 @@ fn layer(thickness: f64, shear_modulus: f64, poisson_ratio: f64) -> Option<Coati
     Some(CoatingLayer { thickness, shear_modulus, poisson_ratio })
 }
 
-/// The coefficients of a coated body less those of a half-space of the coating, by definition: a sum over all waves of the grid and their
-/// aliases that are not below 1e-17.
+/// The coefficients of a coated body less those of a half-space of the coating, by definition: a sum over all waves of the grid and those aliases of
+/// them that are not below 1e-17.
 fn by_waves(mu: f64, nu: [f64; 2], t: f64, grid: &Grid, offsets: &[(usize, usize)]) -> Vec<f64> {
     let (transfer, sinc) = (Transfer::new(mu, nu), |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x });
     let last = |d: f64| (21.0 * d / (2.0 * PI * t)).ceil() as i64 + 1;
@@ -46,7 +46,8 @@ fn by_waves(mu: f64, nu: [f64; 2], t: f64, grid: &Grid, offsets: &[(usize, usize
     sums
 }
 
-/// Many aliases and few, counts with more and with fewer waves than a polynomial has nodes, slender elements, odd counts.
+/// Grids with many aliases and with few, with more and with fewer waves than the library's polynomial has nodes, with slender elements, and with odd
+/// numbers of elements.
 #[test]
 fn coefficients_are_sums_over_all_aliases() {
     let mut worst: f64 = 0.0;
@@ -80,7 +81,7 @@ fn coefficients_are_sums_over_all_aliases() {
                 let (kx, ky) = (kx as i64, ky as i64);
                 let scale = half_space.at(0, 0).abs() + kernel.at(0, 0).abs();
                 let error = (kernel.at(kx, ky) - half_space.at(kx, ky) - exact).abs() / scale;
-                // The rounding of sums over some thousand waves, of both.
+                // The tolerance is the round-off of sums over some thousand waves, in the test and in the library.
                 assert!(error <= 1e-13, "{mx} x {my}, mu {mu}, t {t}, ({kx}, {ky}): {error:e}");
                 worst = worst.max(error);
             }
@@ -89,7 +90,8 @@ fn coefficients_are_sums_over_all_aliases() {
     println!("largest difference from sums over waves: {worst:e}");
 }
 
-/// If a coating is too thin for the elements of a coarser grid, coefficients there are mean displacements of four elements by a pressure on four.
+/// If a coating is too thin for the elements of a coarser grid, the coefficients of that grid are mean displacements of 2 x 2 elements by a pressure
+/// on 2 x 2 elements.
 #[test]
 fn coefficients_of_coarser_grids_are_means_where_a_coating_is_thin() {
     let (fine, coarse) = (Grid::new(24, 16, 1.0, 1.0).unwrap(), Grid::new(12, 8, 2.0, 2.0).unwrap());
@@ -125,12 +127,12 @@ fn coatings() -> [Coating; 4] {
         Coating { layers: [layer(0.3, 0.1, 0.3), None] },
         Coating { layers: [None, layer(0.8, 0.02, 0.45)] },
         Coating { layers: [layer(0.1, 0.4, 0.0), layer(0.5, 1.0, 0.2)] },
-        // Stiffer than the body below.
+        // A coating that is stiffer than the body below it.
         Coating { layers: [layer(0.2, 9.0, 0.3), None] },
     ]
 }
 
-/// Flat on flat: the pressure is uniform, and the approach is all compression.
+/// Two flat surfaces: the pressure is uniform, and the approach is the compression of the coatings.
 #[test]
 fn a_uniform_pressure_compresses_by_the_oedometric_moduli() {
     let grid = Grid::new(12, 10, 0.5, 0.4).unwrap();
@@ -160,7 +162,7 @@ fn a_uniform_pressure_compresses_by_the_oedometric_moduli() {
                     "{what}: {p} {u}"
                 );
             }
-            // By approach, with the same force; and with a force that pulls on a given area.
+            // The same with a given approach, and with a force that pulls on a given area.
             let (_, report) = run(&Scene { load: Load::Approach(expected), ..scene.clone() }, &options);
             assert!((report.measures.force / 2.0 - 1.0).abs() <= 1e-6, "{what}: force {}", report.measures.force);
             let fixed = Options { active_set: ActiveSet::Fixed, ..options };
@@ -188,8 +190,8 @@ fn wavy(grid: &Grid) -> Vec<f64> {
     (0..grid.len()).map(at).collect()
 }
 
-/// The conditions of contact hold with the reported approach and displacements, and with direct sums: by force and by approach, from light
-/// contact to approaches beyond the mean of h.
+/// The conditions of contact hold, by direct sums, for the reported approach and displacements: by force and by approach, from light contact to
+/// approaches beyond the mean of h.
 #[test]
 fn the_approach_of_a_force_has_that_force() {
     let grid = Grid::new(24, 21, 0.25, 0.3).unwrap();
@@ -239,7 +241,7 @@ fn a_thin_coating_has_the_approach_of_a_layer() {
     let (_, coated) = run(&Scene { coating: Some(Coating::of_body_1(t, g, nu)), ..plain.clone() }, &Options::default());
     let (_, layered) = run(&Scene { layer: Some(Layer(Each::Uniform(c * t))), ..plain.clone() }, &Options::default());
     let (mean, difference) = (c * t * 0.2 / 16.0, coated.measures.approach - layered.measures.approach);
-    // Of second order in the thickness.
+    // The difference is of second order in the thickness; 3 % of the compression is ample.
     assert!(difference.abs() <= 0.03 * mean, "{difference} of {mean}");
 }
 

@@ -1,4 +1,4 @@
-//! Coatings: the transfer function and the coefficients, Hertz contact of coated bodies, preconditioners, combined effects.
+//! Coatings: the transfer function and the coefficients, Hertz' contact of coated bodies, preconditioners, and combinations with other effects.
 
 use std::f64::consts::PI;
 
@@ -19,18 +19,18 @@ use crate::support::{assert_conditions, run};
 
 const RATIOS: [f64; 9] = [1e-4, 0.01, 0.1, 0.5, 0.999, 2.0, 10.0, 100.0, 1e4];
 
-/// A coated body on a rigid one, with (1 - nu)/(2 pi G) = 1 at its surface.
+/// The coefficients of a coated body on a rigid one, with (1 - nu)/(2 pi G) = 1 for the coating.
 pub fn coated(mu: f64, nu: [f64; 2], t: f64, grid: &Grid) -> Coated {
     let rigid = CoatedBody { compliance: 0.0, layer: None };
     let layer = CoatedBody { compliance: 1.0, layer: Some((t, radial(mu, nu))) };
     Coated::new([layer, rigid], grid).unwrap()
 }
 
-/// The bits of the reference for B: some 100 of them cancel at s = 1e-6 and G1/G2 = 1e6.
+/// The precision of the reference for B in bits: some 100 of them cancel at s = 1e-6 and G1/G2 = 1e6.
 const BITS: usize = 320;
 const RM: RoundingMode = RoundingMode::ToEven;
 
-/// B(s) from its definition.
+/// The transfer function B(s) by its definition, in `BITS` bits.
 fn exact_transfer(mu: f64, [nu1, nu2]: [f64; 2], s: f64, consts: &mut Consts) -> f64 {
     let big = |x: f64| BigFloat::from_f64(x, BITS);
     let (add, sub) = (|a: &BigFloat, b: &BigFloat| a.add(b, BITS, RM), |a: &BigFloat, b: &BigFloat| a.sub(b, BITS, RM));
@@ -61,7 +61,7 @@ fn the_transfer_function_has_all_digits() {
                 assert!(error <= 5e-14, "mu {mu} nu {nu:?} s {s}: {} for {exact}", transfer.at(s));
                 worst = worst.max(error);
             }
-            // Its Taylor coefficients: B(0), and B at a place where twelve of them have ten digits.
+            // The Taylor coefficients give B(0), and B at a place s where twelve of them give ten digits.
             let (taylor, s) = (transfer.taylor(), 0.02 / mu.max(1.0));
             let series = taylor.iter().rev().fold(0.0, |sum, b| sum * s + b);
             assert!((taylor[0] / transfer.substrate - 1.0).abs() <= 1e-14);
@@ -71,7 +71,7 @@ fn the_transfer_function_has_all_digits() {
     println!("largest error of B: {worst:e}");
 }
 
-/// The coefficients of 3 x 3 elements add up to that of one element three times as long and wide, however they were computed.
+/// The coefficients of 3 x 3 elements add up to that of one element three times as long and wide, by whatever method they were computed.
 #[test]
 fn coefficients_add_up_to_those_of_larger_elements() {
     let mut worst: f64 = 0.0;
@@ -130,7 +130,7 @@ pub fn by_hankel_integrals(
 ) -> f64 {
     let transfer = Transfer::new(mu, nu);
     let farthest = (kx as f64 + 1.0) * dx.max(dy) / t;
-    // Panels grow from the length of a stiff plate to a part of a wave; B - 1 is at most 1e-21 beyond 25.
+    // The panels grow from the length that belongs to a stiff plate to a part of a wave of J0. B - 1 is at most 1e-21 beyond s = 25.
     let (mut s, mut width, mut waves) = (0.0, 0.02 / mu.max(1.0), Vec::new());
     while s < 25.0 {
         for (x, weight) in gauss(12) {
@@ -155,7 +155,7 @@ pub fn by_hankel_integrals(
     HalfSpace::new(dx, dy, PI).at(kx as i64, 0) + dx * dy / t * sum
 }
 
-/// For a soft coating a coefficient is far smaller than the two parts of its definition: 1/B(0) of their digits cancel.
+/// For a soft coating a coefficient is far smaller than the two parts of its definition, which cancel: as many digits are lost as 1/B(0) has.
 #[test]
 fn coefficients_are_direct_hankel_integrals() {
     let mut worst: f64 = 0.0;
@@ -203,11 +203,11 @@ fn thin_thick_and_equal_coatings_are_what_they_should_be() {
     }
 }
 
-/// A column of the table: t/aH, a/aH, p0/pH.
+/// One of the columns below: t/aH, a/aH, p0/pH.
 type Column = (f64, f64, f64);
 
-/// A rigid ball on a coated body: `a/aH` and `p0/pH` of an axisymmetric solution by Hankel transforms, without a grid, nu = 0.3; aH and pH
-/// are those of the same force on the substrate alone.
+/// A rigid ball on a coated body, for each G1/G2: `a/aH` and `p0/pH` for four thicknesses, from an axisymmetric solution by Hankel transforms,
+/// without a grid, for nu = 0.3. aH and pH are the contact radius and the largest pressure under the same force without the coating.
 const HERTZ: [(f64, [Column; 4]); 6] = [
     (0.1, [(0.25, 1.45451, 0.56987), (0.5, 1.634207, 0.442380), (1.0, 1.834127, 0.331111), (2.0, 2.014819, 0.254691)]),
     (0.25, [(0.25, 1.22637, 0.75955), (0.5, 1.330897, 0.634832), (1.0, 1.446997, 0.507138), (2.0, 1.538662, 0.427224)]),
@@ -217,7 +217,7 @@ const HERTZ: [(f64, [Column; 4]); 6] = [
     (10.0, [(0.25, 0.75150, 1.14534), (0.5, 0.574649, 2.669873), (1.0, 0.482055, 4.282251), (2.0, 0.466579, 4.592785)]),
 ];
 
-/// The substrate has E* = 1, and R = 1: a force of 4/3 gives aH = 1 and pH = 2/pi.
+/// A ball of R = 1 on a substrate with E* = 1: a force of 4/3 gives aH = 1 and pH = 2/pi. The contact radius has `elements` elements.
 fn ball(mu: f64, t: f64, radius: f64, elements: usize) -> (Grid, Vec<f64>, Bodies, Coating) {
     let m = 2 * (elements + elements / 5) + 1;
     let d = radius / elements as f64;
@@ -236,9 +236,9 @@ fn a_ball_on_a_coated_body_has_the_pressures_of_the_axisymmetric_solution() {
             let (grid, h, bodies, coating) = ball(mu, t, radius, 40);
             let scene = Scene { coating: Some(coating), ..Scene::new(grid, &h, bodies, Load::Force(4.0 / 3.0)) };
             let (solver, report) = run(&scene, &Options { tolerance: 1e-9, ..Options::default() });
-            // With stiff thin coatings the largest pressure is not in the middle.
+            // The pressure in the middle is compared, because with stiff thin coatings the largest pressure is elsewhere.
             let error = (solver.state().p[grid.len() / 2] / (pressure * 2.0 / PI) - 1.0).abs();
-            // Of second order in the elements per radius: 5e-5 for 40, plus the digits of the table.
+            // The error is of second order in the elements per radius, 5e-5 for 40 of them. The digits of the table add to it.
             assert!(error <= 1e-4, "mu {mu} t {t}: p0 off by {error:e}");
             let found = (report.measures.contact_area / PI).sqrt();
             assert!((found - radius).abs() <= 0.5 * grid.dx, "mu {mu} t {t}: a {found} for {radius}");
@@ -248,7 +248,7 @@ fn a_ball_on_a_coated_body_has_the_pressures_of_the_axisymmetric_solution() {
     println!("largest error of p0: {worst:e}");
 }
 
-/// The number of steps of conjugate gradients on a fixed disc of 80 elements across, to 1e-8 of the right-hand side.
+/// The number of conjugate gradient steps to 1e-8 of the right-hand side, on a fixed disc of 80 elements across.
 fn steps(mu: f64, t: f64, rough: bool) -> usize {
     let m = 128;
     let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
@@ -293,7 +293,8 @@ fn steps(mu: f64, t: f64, rough: bool) -> usize {
 
 #[test]
 fn preconditioners_are_positive_and_as_good_as_they_were_measured() {
-    // Changes of the coefficients by half a unit in the last place change a count by up to two.
+    // The columns are mu, t, and the measured numbers of steps for a smooth and for a rough right-hand side. A change of the coefficients by half a
+    // unit in the last place changes a number by up to two.
     #[rustfmt::skip]
     let table = [
         (0.01, 0.01, 5, 7), (0.01, 0.1, 6, 7), (0.01, 1.0, 8, 12), (0.01, 3.0, 8, 12),
@@ -307,10 +308,10 @@ fn preconditioners_are_positive_and_as_good_as_they_were_measured() {
     }
 }
 
-/// `G1/G2`, `(nu1, nu2)`, and pairs `(rho, F)`.
+/// Values of a radial function: `G1/G2`, `(nu1, nu2)`, and pairs `(rho, F)`.
 type Radial = (f64, [f64; 2], &'static [(f64, f64)]);
 
-/// F_1 to 30 digits (mpmath: composite quadrature of `(B - 1) J0`).
+/// The radial function F_1 of a coating, computed with 30 digits (mpmath: composite quadrature of `(B - 1) J0`).
 #[rustfmt::skip]
 const RADIAL: [Radial; 4] = [
     (1e-4, [0.3, 0.3], &[
@@ -340,7 +341,7 @@ fn radial_functions_have_fourteen_digits() {
     for (mu, ratios, values) in RADIAL {
         for &(rho, exact) in values {
             let found = radial(mu, ratios).f(rho, Base::Layer);
-            // The round-off of sums of some 500 terms of order 1.
+            // The tolerance is the round-off of sums of some 500 terms of order 1.
             assert!((found - exact).abs() <= 2e-14 * exact.abs().max(1.0), "mu {mu} rho {rho}: {found} for {exact}");
         }
     }
@@ -365,7 +366,7 @@ fn soft_and_stiff() -> Coating {
     Coating { layers: [layer(0.3, 0.2, 0.4), layer(0.15, 6.0, 0.2)] }
 }
 
-/// The conditions of contact, with u by direct summation over coefficients.
+/// The conditions of contact hold for coated bodies with other effects and by each method, with u by direct sums over the coefficients.
 #[test]
 fn a_coating_goes_with_other_effects_and_methods() {
     let (m, d) = (32, 0.2);
@@ -417,7 +418,7 @@ fn no_coating_in_effect_is_the_plain_scene() {
         let (with, _) = run(&Scene { coating: Some(Coating { layers }), ..plain.clone() }, &Options::default());
         assert_eq!(with.state().p, without.state().p);
     }
-    // A coating so thick that it is a half-space.
+    // A coating that is so thick that it acts as a half-space.
     let thick = Coating { layers: [layer(1e15, 1.0, 0.3), None] };
     let bodies = Bodies { shear_modulus: [3.0, 2.0], poisson_ratio: [0.1, 0.25] };
     let scene = Scene { coating: Some(thick), bodies, ..plain.clone() };
@@ -446,7 +447,7 @@ fn periodic_coefficients_have_the_transform_of_the_layer() {
                 * (2.0 * PI * (i * kx) as f64 / 12.0).cos()
                 * (2.0 * PI * (j * ky) as f64 / 9.0).cos();
         }
-        // The aliases beyond n are 1/n^2 of the sum: with twice as many a quarter of the error remains.
+        // The aliases beyond n make 1/n^2 of the sum: the test extrapolates from n and 2 n, where a quarter of the error remains.
         let sum = |n: i64| -> f64 {
             let aliases = (-n..=n).flat_map(|a| (-n..=n).map(move |b| (a, b)));
             aliases

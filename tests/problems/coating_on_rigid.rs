@@ -1,5 +1,5 @@
-//! Coatings on stiff and rigid bodies: the transfer function, coefficients, closed forms of thin layers, the test's own product over waves, two
-//! periods.
+//! Coatings on stiff and on rigid bodies: the transfer function, the coefficients, closed forms of thin layers, a product over waves of the test's
+//! own, and two periods.
 
 use std::f64::consts::PI;
 
@@ -30,8 +30,8 @@ fn sinh_less(x: f64) -> f64 {
     }
 }
 
-/// B of a bonded layer on a rigid base by its finite thickness (as written for elastic strips and by ContactMechanics),
-/// `((3 - 4 nu) sinh 2s - 2s)/((3 - 4 nu) cosh 2s + 2 s^2 + 4 nu (2 nu - 3) + 5)`.
+/// The transfer function B of a bonded layer on a rigid base, in its usual form for a layer of finite thickness (for elastic strips, and in the
+/// package ContactMechanics): `((3 - 4 nu) sinh 2s - 2s)/((3 - 4 nu) cosh 2s + 2 s^2 + 4 nu (2 nu - 3) + 5)`.
 fn finite_thickness(nu: f64, s: f64) -> f64 {
     let q = 3.0 - 4.0 * nu;
     let sheared = q * sinh_less(2.0 * s) + (2.0 - 4.0 * nu) * 2.0 * s;
@@ -54,7 +54,7 @@ fn the_transfer_function_on_a_rigid_body_is_that_of_finite_thickness() {
             }
             for s in [1e-3, 0.01, 0.1, 0.49, 0.51, 1.0, 2.0, 5.0, 10.0, 19.0, 21.0, 100.0] {
                 let (found, exact) = (transfer.at(s), finite_thickness(nu, s));
-                // Round-off of some ten terms, and of cosh at large s.
+                // The tolerance is the round-off of some ten terms, and that of cosh at large s.
                 assert!((found / exact - 1.0).abs() <= 1e-13, "nu {nu} s {s}: {found} for {exact}");
             }
         }
@@ -79,7 +79,7 @@ fn coefficients_on_stiff_and_rigid_bodies_are_direct_hankel_integrals() {
                     let (found, nearest) = (table.at(kx as i64, 0), table.at(0, 0));
                     let error = (found - by_hankel_integrals(mu, nu, t, (1.0, dy), kx, points)).abs() / nearest;
                     assert!(error <= 1e-12, "mu {mu} nu {nu:?} t {t} offset {kx}: {error:e}");
-                    // The substrate has an effect of first order in mu: mu (1 - nu2)/(1 - nu1) times Love's integral, 4 at most.
+                    // The substrate changes a coefficient in first order of mu: by mu (1 - nu2)/(1 - nu1) times Love's integral, which is at most 4.
                     let change = (found - rigid.at(kx as i64, 0)).abs();
                     assert!(change <= 4.0 * 1.5 * mu + 1e-13 * nearest, "mu {mu} nu {nu:?} t {t}: {change:e}");
                     worst = worst.max(error);
@@ -98,7 +98,8 @@ fn ball(m: usize, half: f64) -> (Grid, Vec<f64>) {
     (Grid::new(m, m, d, d).unwrap(), h)
 }
 
-/// Thin compressible layers: `F = pi M a^4/(4 R t)`, `a^2 = 2 R delta`. The error is of order `t/a`.
+/// Thin compressible layers, M the oedometric modulus: `F = pi M a^4/(4 R t)`, `a^2 = 2 R delta`. The error
+/// is of order `t/a`.
 #[test]
 fn a_ball_on_a_thin_layer_on_a_rigid_body_has_the_force_of_the_closed_form() {
     let (grid, h) = ball(96, 0.55);
@@ -112,7 +113,7 @@ fn a_ball_on_a_thin_layer_on_a_rigid_body_has_the_force_of_the_closed_form() {
             let (_, report) = run(&scene, &options);
             let force = report.measures.force;
             assert!((force / thin - 1.0).abs() <= part, "t {t} {method:?}: {force} for {thin}");
-            // With the force given the approach follows: dF/F is about 2 d(delta)/delta.
+            // With this force given, the approach must come back. dF/F is about 2 d(delta)/delta.
             let (_, report) = run(&Scene { load: Load::Force(force), ..scene.clone() }, &options);
             let off = (report.measures.approach / approach - 1.0).abs();
             assert!(off <= 1e-5, "t {t} {method:?}: {off:e}");
@@ -120,8 +121,8 @@ fn a_ball_on_a_thin_layer_on_a_rigid_body_has_the_force_of_the_closed_form() {
     }
 }
 
-/// A layer far thinner than an element acts as one spring per element: `p = M (delta - h)/t`. The displacements of other elements are some t/d of
-/// that.
+/// A layer much thinner than an element acts as one spring per element, `p = M (delta - h)/t`. Other elements are displaced by some t/d of this
+/// element's displacement.
 #[test]
 fn a_layer_far_thinner_than_elements_is_springs() {
     for (m, dy) in [(24, 1.0), (24, 10.0)] {
@@ -137,7 +138,7 @@ fn a_layer_far_thinner_than_elements_is_springs() {
     }
 }
 
-/// Incompressible layers: `a^2 = 4 R delta`, `p = 3 G (a^2 - r^2)^2/(32 R t^3)`. The convergence to this limit is slow: the difference has to halve
+/// Thin incompressible layers tend to `a^2 = 4 R delta`, `p = 3 G (a^2 - r^2)^2/(32 R t^3)`. The convergence is slow: the difference has to halve
 /// with t.
 #[test]
 fn a_ball_on_a_thin_incompressible_layer_tends_to_the_closed_form() {
@@ -153,8 +154,8 @@ fn a_ball_on_a_thin_incompressible_layer_tends_to_the_closed_form() {
     assert!(before < 0.1, "{before}");
 }
 
-/// The mean of u over elements with a wave of unit pressure, by the test's own transfer function, over all aliases of the wave. They fall as 1/n, so
-/// that two numbers of aliases give the rest. `number`: the waves per element, in x and in y.
+/// The mean of u over elements under a wave of unit pressure, by the test's own transfer function, over all aliases of the wave. The aliases beyond n
+/// contribute a part that falls as 1/n, so that two values of n give the rest. `number`: the waves per element, in x and in y.
 fn wave_response(nu: f64, t: f64, d: f64, number: [f64; 2]) -> f64 {
     const LAST: i64 = 40;
     let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
@@ -170,7 +171,8 @@ fn wave_response(nu: f64, t: f64, d: f64, number: [f64; 2]) -> f64 {
     more + (more - less) / 3.0
 }
 
-/// `u` on elements by a sum over waves, with a period that is longer than the decay of the layer's kernel: by the test's own transform.
+/// The displacements `u` of elements by a sum over waves, computed by the test's own Fourier transform. The period is longer than the range of the
+/// layer's kernel.
 fn by_waves(nu: f64, t: f64, p: &[f64], m: usize, d: f64, period: usize) -> Vec<f64> {
     let waves = |cosine: bool| -> Vec<f64> {
         let at = |i: usize, k: usize| 2.0 * PI * ((i * k) % period) as f64 / period as f64;
@@ -185,7 +187,7 @@ fn by_waves(nu: f64, t: f64, p: &[f64], m: usize, d: f64, period: usize) -> Vec<
         .map(|k| wave_response(nu, t, d, [k % (half + 1), k / (half + 1)].map(|i| i as f64 / period as f64)))
         .collect();
     for j in 0..period {
-        // Rows of p, multiplied by the wave in y.
+        // The rows of p, multiplied by the wave in y and summed over y.
         let (c, s) = (&cosines[j * m..][..m], &sines[j * m..][..m]);
         let column =
             |x: usize| (0..m).fold((0.0, 0.0), |(re, im), y| (re + p[y * m + x] * c[y], im - p[y * m + x] * s[y]));
@@ -199,7 +201,7 @@ fn by_waves(nu: f64, t: f64, p: &[f64], m: usize, d: f64, period: usize) -> Vec<
             let response = responses[j.min(period - j) * (half + 1) + i.min(period - i)] / (period * period) as f64;
             (re, im) = (re * response, im * response);
             for y in 0..m {
-                // e^{i ky y}
+                // Multiplies by e^{i ky y}.
                 let (a, b) = (re * c[y] - im * s[y], re * s[y] + im * c[y]);
                 for x in 0..m {
                     u[y * m + x] += a * cx[x] - b * sx[x];
@@ -231,7 +233,7 @@ fn an_own_product_over_waves_certifies_a_layer_on_a_rigid_body() {
     }
 }
 
-/// Rubber on steel and gel on glass, in MPa and mm: the conditions of contact, with a product by direct summation.
+/// Rubber on steel and gel on glass, in MPa and mm: the conditions of contact hold, with products by direct sums.
 #[test]
 fn rubber_on_steel_and_gel_on_glass_are_solved_by_every_method() {
     let (grid, h) = ball(48, 0.6);
@@ -251,7 +253,8 @@ fn rubber_on_steel_and_gel_on_glass_are_solved_by_every_method() {
     }
 }
 
-/// Flat on flat: `P t/M`. A wave in full contact: the amplitude of p is that of h over `u^` and the means over elements.
+/// Two flat surfaces approach by `P t/M`. For a wave in full contact the amplitude of p is that of h divided by the layer's response to the wave, as
+/// a mean over elements.
 #[test]
 fn with_two_periods_the_layer_is_compressed_and_waves_are_pressed_flat() {
     let (m, d, t, nu) = (24, 0.25, 0.3, 0.3);
@@ -274,7 +277,7 @@ fn with_two_periods_the_layer_is_compressed_and_waves_are_pressed_flat() {
             "{method:?} {}",
             report.measures.approach
         );
-        // The nearest alias has 1/23^2 of the amplitude, so that sums over elements suffice.
+        // The nearest alias has 1/23^2 of the amplitude, so that a sum over elements gives the amplitude of the wave.
         let p = &solver.state().p;
         let amplitude = 2.0 * p.iter().zip(&wave).map(|(p, w)| p * w / 0.01).sum::<f64>() / (m * m) as f64;
         let response: f64 = (-4000..=4000)
@@ -284,11 +287,11 @@ fn with_two_periods_the_layer_is_compressed_and_waves_are_pressed_flat() {
                     / (0.5 * k * d)
             })
             .sum();
-        // The error by aliases beyond n is 1/n^2.
+        // Leaving out the aliases beyond n = 4000 has an error of order 1/n^2.
         assert!((amplitude * response / -0.01 - 1.0).abs() <= 1e-6, "{method:?}: {amplitude}");
         let (_, by_approach) = run(&Scene { load: Load::Approach(3.0 * t / oedometric), ..scene.clone() }, &options);
         assert!((by_approach.measures.force / (3.0 * area) - 1.0).abs() <= 1e-8, "{}", by_approach.measures.force);
-        // An incompressible layer has no compression, and so no approach of its own in full contact.
+        // An incompressible layer has no compression, so that its approach is 0 in full contact, whatever the force.
         let scene = Scene { coating: layer(t, 1.0, 0.5), ..scene };
         let (_, report) = run(&scene, &options);
         assert!(report.measures.approach.abs() <= 1e-12, "{method:?} {}", report.measures.approach);
@@ -307,7 +310,7 @@ fn what_is_not_solved_on_a_rigid_body_is_refused_by_name() {
     assert!(thin.contains("coating[1]->thickness") && thin.contains("incompressible"), "{thin}");
     run(&Scene { coating: layer(0.13 * grid.dx, 1.0, 0.5), ..plain.clone() }, &Options::default());
     run(&Scene { coating: layer(0.001 * grid.dx, 1.0, 0.3), ..plain.clone() }, &Options::default());
-    // Two rigid surfaces: the coating has no thickness, or there is none.
+    // Both surfaces are rigid: the coating has no thickness, or there is no coating.
     for coating in [None, layer(0.0, 1.0, 0.3)] {
         let rigid = refusal(&Scene { coating, ..plain.clone() });
         assert!(rigid.contains("infinite for both bodies"), "{rigid}");

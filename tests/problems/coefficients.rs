@@ -1,5 +1,5 @@
-//! The coefficients of every effect: the dense oracle compared with the test's own sum, and products with the oracle; bounded work for slender
-//! periods; the comparisons of a handle; renewed operators.
+//! The influence coefficients of every effect. The dense oracle (dense.rs) is compared with the test's own sum, and products with the oracle. Also: a
+//! bounded effort for slender elements with periods, how a handle compares scenes, and renewed operators.
 
 use std::f64::consts::PI;
 
@@ -23,7 +23,7 @@ fn numbers(n: usize, mut seed: u64) -> Vec<f64> {
     (0..n).map(|_| next()).collect()
 }
 
-/// Tables whose coefficients depend on all offsets and rows that they may depend on.
+/// A table of offsets and a row table of random coefficients, so that each coefficient differs from all others.
 fn tables(grid: &Grid) -> (Vec<f64>, Vec<f64>) {
     let Grid { mx, my, .. } = *grid;
     let table: Vec<f64> = numbers(4 * mx * my, 1).iter().map(|c| c + 0.1).collect();
@@ -77,7 +77,8 @@ fn the_oracle_is_right_for_every_effect_and_products_agree_with_it() {
                         let factor = if coupled { factors[(patch[i] * 3 + patch[j]) as usize] } else { 1.0 };
                         sum += factor * c * p[j];
                     }
-                    // 35 terms and a diagonal, each below 1.1; a transform of 14 by 10 has a factor of the logarithm of its size.
+                    // Sums of 35 terms and a diagonal, each below 1.1, have magnitudes below 40. Direct sums may differ by 8 units of round-off of
+                    // it, and FFT products of 14 x 10 values by a factor of about the logarithm of their size more.
                     let near = |value: f64, ulps: f64| (value - sum).abs() <= ulps * f64::EPSILON * 40.0;
                     assert!(near(u[i], 8.0), "{kernel} {layer:?} {coupled} {i}: {} {sum}", u[i]);
                     assert!(near(fast[i], 64.0), "{kernel} {layer:?} {coupled} {i}: {} {sum}", fast[i]);
@@ -124,8 +125,8 @@ fn a_renewed_operator_is_a_new_one() {
     }
 }
 
-/// `integral over |s| < dx/2 of -2 log|2 sin(pi (x - s)/L)|` by its Fourier series, `sum 2/n cos(2 pi n x/L)`. With factors of `sin(pi n dx/L)` terms
-/// fall as 1/n^2, so that the error after `terms` is at most 2 L/(pi terms).
+/// `integral over |s| < dx/2 of -2 log|2 sin(pi (x - s)/L)|` by its Fourier series, `sum 2/n cos(2 pi n x/L)` times the mean of the wave over the
+/// element. The factors `sin(pi n dx/L)` make the terms fall as 1/n^2, so that the error after `terms` is at most 2 L/(pi terms).
 fn waves_along(x: f64, dx: f64, length: f64, terms: usize) -> f64 {
     let term = |n: f64| 2.0 / n * (2.0 * PI * n * x / length).cos() * length / (PI * n) * (PI * n * dx / length).sin();
     (1..=terms).rev().map(|n| term(n as f64)).sum()
@@ -135,7 +136,7 @@ fn waves_along(x: f64, dx: f64, length: f64, terms: usize) -> f64 {
 fn slender_elements_have_periodic_coefficients_in_bounded_time() {
     let log_integral = |y: f64, w: f64| y * ((w / y).ln() + 1.0);
     for slenderness in [1e-3, 1e-6, 1e-9, 1e-100] {
-        // A sum over all images would never end here.
+        // A direct sum over all images of the period would take unbounded time here.
         for m in [1, 4, 32] {
             for two in [false, true] {
                 let grid = Grid::new(m, m, slenderness, 1.0).unwrap();
@@ -154,7 +155,8 @@ fn slender_elements_have_periodic_coefficients_in_bounded_time() {
                     if two || 6.0 * length > 0.5 {
                         continue;
                     }
-                    // c dx 2/L log(W/|y|), and on the loaded row the waves of plane strain.
+                    // The exact coefficient: the mean along x is c dx 2/L log(W/|y|), integrated over the element in y; on the loaded row the waves
+                    // of plane strain add to it.
                     let (a, b, w) = ((ky as f64 - 0.5) * dy, (ky as f64 + 0.5) * dy, m as f64 * dy);
                     let mean = match ky {
                         0 => 2.0 * log_integral(b, w),
@@ -162,7 +164,7 @@ fn slender_elements_have_periodic_coefficients_in_bounded_time() {
                     };
                     let waves = if ky == 0 { waves_along(kx as f64 * dx, dx, length, 40_000) } else { 0.0 };
                     let exact = (2.0 * dx / length * mean + waves) / PI;
-                    // The error of 40000 terms: m/(2 n^2) each, relative to dx.
+                    // The error of the series after 40000 terms of m/(2 n^2) each, relative to dx.
                     let left = if ky == 0 { 2.0 * length / (PI * 40_000.0) / PI } else { 0.0 };
                     assert!(
                         (found - exact).abs() <= left + 1e-13 * scale,
@@ -175,16 +177,16 @@ fn slender_elements_have_periodic_coefficients_in_bounded_time() {
 }
 
 #[test]
-fn with_two_periods_slender_ones_have_the_spectrum_of_plane_strain_across() {
-    // The mean along the shorter period: `sum over kx of A = sum over aliases of 2 pi c/|q| sinc(q dy/2)` at waves in y, which is even and
-    // of mean zero. By images of lines: the log-sine series.
+fn with_two_periods_slender_elements_have_the_spectrum_of_plane_strain_across() {
+    // The mean of A along the shorter period is, in the Fourier domain, `sum over kx of A = sum over aliases of 2 pi c/|q| sinc(q dy/2)` at waves q
+    // in y. It is even and has mean zero. In real space it is the log-sine series of images of lines.
     for slenderness in [1e-2, 1e-4, 1e-8] {
         let (mx, my) = (4, 12);
         let grid = Grid::new(mx, my, slenderness, 1.0).unwrap();
         let found = Periodic::new(HalfSpace::new(slenderness, 1.0, 1.0), (true, true), &grid).unwrap();
         for ky in 0..my as i64 {
             let mean = (0..mx as i64).map(|kx| found.at(kx, ky)).sum::<f64>() / mx as f64;
-            // c dx 2/Lx integral of -log(2 sin(pi y/Ly)): the series above, along y; each term over an element, 1/12 of the period.
+            // c dx 2/Lx times the integral of -log(2 sin(pi y/Ly)) over the element, which is 1/12 of the period: the series above, along y.
             let terms = 400_000;
             let exact = 2.0 / mx as f64 / PI * 0.5 * waves_along(ky as f64, 1.0, my as f64, terms);
             let left = 2.0 * my as f64 / (PI * terms as f64);
@@ -194,8 +196,9 @@ fn with_two_periods_slender_ones_have_the_spectrum_of_plane_strain_across() {
 }
 
 #[test]
-fn between_the_ways_of_summation_nothing_jumps() {
-    // Two periods, one much longer: below a ratio of 24 one line, above it three; the coefficients are smooth in dy.
+fn coefficients_do_not_jump_between_the_ways_of_summation() {
+    // With two periods of which one is much longer, the library sums one line of images below a ratio of 24, and three lines above it. The
+    // coefficients must be smooth functions of dy there.
     let at = |dy: f64, kx: i64, ky: i64| {
         let grid = Grid::new(8, 8, 1.0, dy).unwrap();
         let periodic = Periodic::new(HalfSpace::new(1.0, dy, 1.0), (true, true), &grid).unwrap();
@@ -247,7 +250,8 @@ fn what_differs_from_the_set_up_is_named_with_its_values() {
         assert!(words.iter().all(|word| difference.contains(word)), "{words:?}: {difference}");
         assert_eq!(Named::new(set_up).check(set_up), Ok(()), "{words:?}");
     }
-    // Own coefficients need not be given again, a layer without compliance is none, and a table replaces the bodies.
+    // Three scenes are accepted: one without the caller's coefficients of the set-up, one with a layer of compliance 0, which counts as none, and one
+    // whose table replaces the bodies.
     assert_eq!(Named::new(&own(0.25)).check(&softer), Ok(()));
     assert_eq!(Named::new(&plain).check(&layer(Layer(Each::Uniform(0.0)))), Ok(()));
 }

@@ -1,4 +1,4 @@
-//! Costs that are counted and not timed: the grids of a bill, and the products of price lists with friction.
+//! Costs that the library counts instead of timing them: the grids of a bill of effects, and the products in price lists with friction.
 
 use std::time::Duration;
 
@@ -23,7 +23,7 @@ fn paraboloid(grid: &Grid, h: &mut [f64]) {
     }
 }
 
-/// On a machine that takes 40 ms longer for each iteration the bill has the same bits.
+/// The bill has the same bits if each iteration takes 40 ms longer, as on a busy machine.
 #[test]
 fn a_bill_is_the_same_on_a_busy_machine() {
     let grid = grid(64);
@@ -48,8 +48,8 @@ fn a_bill_is_the_same_on_a_busy_machine() {
     }
 }
 
-/// A largest stress comes with its depth: a bill of both chooses the grids of a bill of one, and has its values to the last bit. With two different
-/// stresses the last grid would be 64 x 64 instead of 128 x 128.
+/// A solve that gives the largest stress gives its depth, too. So a bill of both quantities chooses the grids of a bill of one, and has its values to
+/// the last bit. With two different stresses the last grid would be 64 x 64 instead of 128 x 128.
 #[test]
 fn the_depth_of_a_largest_stress_costs_nothing_beside_it() {
     let grid = grid(128);
@@ -69,7 +69,8 @@ fn the_depth_of_a_largest_stress_costs_nothing_beside_it() {
     assert_ne!(one[0].value, two[0].value, "a second stress ends on a coarser grid");
 }
 
-/// A loose target takes at most half of the products of a tight one. This includes the tangential problem, whose iterations are not reported.
+/// A loose target takes at most half of the products of a tight one. The products include those of the tangential problem, whose iterations are not
+/// reported.
 #[test]
 fn products_with_friction_are_those_of_each_target() {
     let (mut rows, mut near) = (0, 0);
@@ -97,7 +98,7 @@ fn products_with_friction_are_those_of_each_target() {
                 let report = solve(&scene, &Options { tolerance: price.tolerance, ..options }).expect("a solve").2;
                 let counted = report.count.work_units + report.friction.expect("friction").products;
                 let ratio = price.work_units / counted;
-                // The products grow with the number of elements, which coarser samples show in part.
+                // The number of products grows with the number of elements. Coarser samples show only a part of this growth.
                 assert!((0.6..1.6).contains(&ratio), "{:?}, {:?}, {}: {ratio}", bodies, friction.motion, price.target);
                 (rows, near) = (rows + 1, near + usize::from((1.0 / 1.3..1.3).contains(&ratio)));
             }

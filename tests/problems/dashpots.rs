@@ -1,4 +1,5 @@
-//! Viscoelastic bodies by the equations of their dashpots, integrated in small steps, and paths of loads whose steps they certify.
+//! Viscoelastic bodies, integrated in small steps from the equations of their springs and dashpots. This reference certifies the steps of a path of
+//! loads.
 
 use contact_normal::scene::Visco;
 use contact_normal::scene::{Branches, Load, Scene};
@@ -11,12 +12,12 @@ pub const MX: usize = 18;
 pub const MY: usize = 14;
 pub const SIDE: f64 = 0.08;
 
-/// A body by the equations of its dashpots, `t dq/dt = u - q`, integrated by a Runge-Kutta method in many small steps.
+/// A body in terms of its dashpots, `t dq/dt = u - q`, integrated by a Runge-Kutta method in many small steps.
 struct Dashpots {
     share: f64,
     r: Vec<f64>,
     t: Vec<f64>,
-    /// `[element][branch]`.
+    /// The displacements of the dashpots, `[element][branch]`.
     q: Vec<Vec<f64>>,
     w: Vec<f64>,
 }
@@ -33,7 +34,7 @@ impl Dashpots {
         w + self.r.iter().zip(q).map(|(r, q)| r * q).sum::<f64>()
     }
 
-    /// q after a step with the displacement `u(part, q)`.
+    /// The dashpots' displacements q after a step of time dt, if the body's displacement at the part s of the step is `u(s, q)`.
     fn integrate(&self, q: &[f64], dt: f64, u: impl Fn(f64, &[f64]) -> f64) -> Vec<f64> {
         let (mut q, h) = (q.to_vec(), dt / PARTS as f64);
         let slope = |s: f64, q: &[f64]| -> Vec<f64> {
@@ -54,7 +55,7 @@ impl Dashpots {
         q
     }
 
-    /// A step that ends with this A p; adds the displacement of the body.
+    /// Makes a step at whose end A p is `product`, and adds the displacement of the body to `displacement`.
     fn step(&mut self, dt: f64, form: Form, product: &[f64], displacement: &mut [f64]) {
         for (i, product) in product.iter().enumerate() {
             let (q, w0, w) = (&self.q[i], self.w[i], self.share * product);
@@ -84,7 +85,7 @@ impl Dashpots {
     }
 }
 
-/// Asserts the conditions of a step, to the tolerance and to that of the integration. Returns the force.
+/// Asserts the contact conditions at the end of a step, to the tolerance of the solve and that of the integration. Returns the force.
 fn assert_step(what: &str, h: &[f64], u: &[f64], solver: &Solver, limit: f64) -> f64 {
     let state = solver.state();
     let (mut residual, mut distance, mut violation, mut deepest) = (0.0, 0.0, 0.0_f64, 0.0_f64);
@@ -99,7 +100,7 @@ fn assert_step(what: &str, h: &[f64], u: &[f64], solver: &Solver, limit: f64) ->
         } else {
             violation = violation.max(-e);
         }
-        // The reported u is the integrated one: with 300 parts the error is 1e-9 for a step of five relaxation times.
+        // The reported u equals the integrated one. With 300 parts the error of the integration is 1e-9 for a step of five relaxation times.
         assert!((state.u[i] - u[i]).abs() <= 1e-7 * (1e-3 + u[i].abs()), "{what}: {} for {}", state.u[i], u[i]);
     }
     assert!(residual.sqrt() <= 2e-6 * distance.sqrt(), "{what}: {residual:e} {distance:e}");
@@ -107,7 +108,7 @@ fn assert_step(what: &str, h: &[f64], u: &[f64], solver: &Solver, limit: f64) ->
     state.p.iter().sum::<f64>() * SIDE * SIDE
 }
 
-/// Solves and checks a path of a scene, step by step; `shares` are those of the bodies in the instantaneous compliance.
+/// Solves a path of loads step by step, and checks each step. `shares`: the shares of the bodies in the instantaneous compliance.
 pub fn assert_path(what: &str, scene: &Scene<'_>, shares: [f64; 2], path: &[(f64, Load)], options: &Options) {
     let visco = scene.visco.expect("bodies that relax");
     let coated = |b: usize| scene.coating.and_then(|coating| coating.layers[b]).map(|layer| layer.shear_modulus);

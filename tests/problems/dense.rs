@@ -1,4 +1,4 @@
-//! `u = A p` by direct summation: the naive twin of `Operator` for every effect, and the oracle of its tests.
+//! `u = A p` by direct summation, for every effect: the oracle for the tests of `Operator`.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::Coefficients;

@@ -1,4 +1,5 @@
-//! Pairs of effects. A pair is solved, and the conditions of both hold, or it is refused by both names. No effect is ignored.
+//! Pairs of effects. A pair is either solved, and the conditions with both effects hold, or it is refused with a message that names both. No effect
+//! is ignored.
 
 use std::f64::consts::PI;
 
@@ -12,7 +13,7 @@ use contact_normal::solver::{solve, Options, Outcome};
 const EFFECTS: [&str; 8] =
     ["influence", "layer", "pressure_limit", "period", "patches", "row_tables", "excluded elements", "coating"];
 
-/// Pairs that are refused; all others are solved. The table of docs/effects.md says the same.
+/// The pairs that are refused, as in the table of docs/effects.md. All other pairs are solved.
 const REFUSED: [(&str, &str); 7] = [
     ("influence", "period"),
     ("period", "patches"),
@@ -23,7 +24,7 @@ const REFUSED: [(&str, &str); 7] = [
     ("row_tables", "coating"),
 ];
 
-/// The contact conditions, by a direct sum over the coefficients.
+/// Asserts the contact conditions by direct sums over the coefficients.
 fn assert_conditions(
     scene: &Scene<'_>,
     state: &State,
@@ -46,7 +47,7 @@ fn assert_conditions(
             violation = violation.max(-e);
         }
     }
-    // The default tolerance, and round-off of sums of 360 terms.
+    // The default tolerance is 1e-6; sums of 360 terms have a round-off below 1e-12.
     assert!(residual.sqrt() <= (1e-6 + 1e-12) * distance.sqrt(), "{names:?}: {residual:e} of {distance:e}");
     assert!(violation <= (1e-6 + 1e-12) * f64::sqrt(distance / count), "{names:?}: {violation:e}");
     let force = state.p.iter().sum::<f64>() * scene.grid.element_area();
@@ -67,7 +68,7 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
     let table_at = |kx: i64, ky: i64| half_space.at(kx, ky) * (-0.3 * ((kx * kx + ky * ky) as f64).sqrt()).exp();
     let table: Vec<f64> = (0..4 * grid.len() as i64).map(|i| table_at(i % 40 - 20, i / 40 - 18)).collect();
     let table = Table::new(20, 18, &table, &grid).unwrap();
-    // Coefficients that fall from row to row.
+    // Coefficients that decrease from row to row, so that row tables differ from a table of offsets.
     let answers = |iy: i64| 1.0 - 0.03 * iy as f64;
     let row_tables: Vec<f64> = (0..18 * 18 * 40)
         .map(|i| {
@@ -76,7 +77,7 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
         })
         .collect();
     let row_tables = RowTables::new(20, 18, &row_tables, &grid).unwrap();
-    // A soft coating, two elements thick. Other tests check its coefficients.
+    // A soft coating that is two elements thick. Other tests check its coefficients.
     let below = CoatedBody { compliance: 0.7 / (2.0 * PI), layer: None };
     let above = CoatedBody { compliance: 0.6 / (2.0 * PI * 0.3), layer: Some((0.2, radial(0.3, [0.4, 0.3]))) };
     let coated = Coated::new([above, below], &grid).unwrap();
@@ -128,7 +129,7 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
                 assert!(message.contains(one) && message.contains(other), "{message}");
                 continue;
             }
-            // Pressures of some 0.2 change by far more than the tolerance of 1e-6 when an effect is left out.
+            // Pressures are some 0.2. Leaving out an effect changes them by far more than the tolerance of 1e-6.
             let both = solved([one, other]);
             let second = solved([other, other]);
             for (name, single) in [(one, &alone), (*other, &second)] {

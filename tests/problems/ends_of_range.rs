@@ -10,7 +10,7 @@ use contact_normal::threads::Threads;
 
 const BODIES: Bodies = Bodies { shear_modulus: [1.0, 1.0], poisson_ratio: [0.3, 0.3] };
 
-/// Given coefficients do not depend on the sizes of elements. Without a check the force would be 0 or infinite.
+/// The caller's coefficients do not depend on the sizes of elements, which only enter forces. Without a check a force would be 0 or infinite here.
 #[test]
 fn areas_and_forces_beyond_the_range_of_numbers_are_refused() {
     let offset = |k: usize| ((k % 8) as f64 - 4.0).hypot((k / 8) as f64 - 4.0);
@@ -34,7 +34,7 @@ fn areas_and_forces_beyond_the_range_of_numbers_are_refused() {
     }
 }
 
-/// A single element with two periods has no displacement, but it has an area.
+/// A single element with two periods has no displacement. Its area must still be in the range of numbers.
 #[test]
 fn the_area_of_a_single_element_with_two_periods_is_in_range() {
     for (side, is_refused) in [(1e-160, true), (1.0, false), (1e150, true)] {
@@ -67,7 +67,7 @@ fn loads_whose_stresses_overflow_are_refused() {
     }
 }
 
-/// A stop at the last depth, or at the last points, omits nothing.
+/// If a callback stops the stresses at the last depth or the last points, nothing is missing, and the outcome is that of a complete call.
 #[test]
 fn a_stop_with_the_last_depth_is_no_stop() {
     let body = Body { grid: Grid::new(4, 4, 1.0, 1.0).expect("a grid"), poisson_ratio: 0.3, periodic: false };
@@ -84,7 +84,8 @@ fn a_stop_with_the_last_depth_is_no_stop() {
     assert!(done.expect("stresses"));
 }
 
-/// e = h - approach + A p for two elements with two periods: displacements depend on the difference of both pressures only.
+/// Two elements with two periods. Their displacements depend only on the difference of both pressures, so that the element with a tiny limit is at
+/// its limit.
 #[test]
 fn limits_next_to_nothing_are_reached() {
     let grid = Grid::new(2, 1, 1.0, 1.0).expect("a grid");
@@ -100,7 +101,7 @@ fn limits_next_to_nothing_are_reached() {
                 let (solver, outcome, _) = solve(&scene, &Options { method, ..Options::default() }).expect("a scene");
                 let state = solver.state();
                 let low = usize::from(h[0] < h[1]);
-                // Without its limit the element would penetrate: .43 exceeds the mean of both distances.
+                // The element at its limit would penetrate without the limit: the approach .43 exceeds the mean of both distances.
                 assert_eq!(outcome, Outcome::Converged, "{method:?} {small} {:?}", state.p);
                 assert!(state.p[low] == small && state.at_limit[low], "{method:?} {small} {:?}", state.p);
             }
@@ -108,7 +109,8 @@ fn limits_next_to_nothing_are_reached() {
     }
 }
 
-/// The whole contact is at its limit after the only cycle, and the conditions hold.
+/// After the only cycle that is allowed, the whole contact is at its limit and the conditions hold: the status is OK, although the cycles are used
+/// up.
 #[test]
 fn a_result_that_holds_is_ok_whatever_ended_the_cycles() {
     for (mx, my) in [(1, 1), (17, 5)] {
@@ -125,7 +127,7 @@ fn a_result_that_holds_is_ok_whatever_ended_the_cycles() {
     }
 }
 
-/// With a single cycle AUTO makes that of its first method.
+/// If a single cycle is allowed, AUTO uses it for its first method.
 #[test]
 fn the_only_cycle_goes_to_the_first_method() {
     let grid = Grid::new(64, 64, 0.05, 0.05).expect("a grid");
@@ -139,7 +141,8 @@ fn the_only_cycle_goes_to_the_first_method() {
     assert_eq!(residual(Method::Auto), residual(Method::ProjectedCg));
 }
 
-/// Elements of a micrometre, in metres, are solved in other units. A solve with a limit must not change the next one without.
+/// Elements of a micrometre, given in metres, are solved in other units internally. A solve with a pressure limit must not change the next solve
+/// without one.
 #[test]
 fn a_limit_of_the_solve_before_changes_not_a_bit() {
     let grid = Grid::new(64, 64, 1e-6, 1e-6).expect("a grid");

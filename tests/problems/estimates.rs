@@ -1,4 +1,5 @@
-//! Estimated errors beside true ones: exact solutions of ellipse, sphere, cone and flat punch, and finer grids for other surfaces.
+//! Estimated errors compared with true errors: for the ellipse, sphere, cone and flat punch with exact solutions, and for other surfaces with
+//! solutions on finer grids.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -20,7 +21,7 @@ struct Exact {
     h: fn(f64, f64) -> f64,
     approach: f64,
     force: f64,
-    /// None: infinite.
+    /// `None`: the pressure is infinite.
     max_pressure: Option<f64>,
     area: f64,
 }
@@ -53,7 +54,8 @@ fn sphere() -> Exact {
     }
 }
 
-/// h = r: approach = pi a/2, F = pi a^2/2 with E* = 1; p is infinite at the tip (Johnson, section 5.2, after Love).
+/// A cone, h = r: approach = pi a/2, F = pi a^2/2 with E* = 1. The pressure is infinite at the tip (Johnson, Contact Mechanics, section 5.2, after
+/// Love).
 fn cone() -> Exact {
     let a = 0.37;
     Exact {
@@ -68,7 +70,7 @@ fn cone() -> Exact {
     }
 }
 
-/// A flat punch: approach d, F = 2 a d with E* = 1; p is infinite at the edge.
+/// A flat circular punch of radius a: F = 2 a d with E* = 1, for the approach d. The pressure is infinite at the edge.
 fn punch() -> Exact {
     let (a, d) = (0.37, 0.1);
     Exact {
@@ -100,7 +102,7 @@ impl Exact {
         (solver, report)
     }
 
-    /// The true error of the approach by force, and of the force by approach.
+    /// The true error of the approach (if the force is given) or of the force (if the approach is given).
     fn error(&self, row: &LedgerRow, by_force: bool) -> f64 {
         let (found, exact) =
             if by_force { (row.measures.approach, self.approach) } else { (row.measures.force, self.force) };
@@ -114,8 +116,8 @@ fn estimating(method: Method) -> Options {
     Options { estimates: true, method, ..Options::default() }
 }
 
-/// Estimated errors over true ones: none is below 0.3, and the median is 0.5 to 3. (Single ones are too large where errors of opposite
-/// sign cancel.)
+/// Asserts the ratios of estimated to true errors: none is below 0.3, and the median is 0.5 to 3. (A single ratio may be large where errors of
+/// opposite sign cancel.)
 fn assert_honest(mut ratios: Vec<f64>, what: &str) {
     ratios.sort_by(f64::total_cmp);
     let (least, median) = (ratios[0], ratios[ratios.len() / 2]);
@@ -123,7 +125,7 @@ fn assert_honest(mut ratios: Vec<f64>, what: &str) {
     assert!(least >= 0.3 && (0.5..=3.0).contains(&median), "{what}: from {least}, median {median}");
 }
 
-/// On every level of the ledger with 64 or more elements in x.
+/// The estimates of every grid of the ledger with 64 or more elements in x are compared.
 #[test]
 fn estimates_of_force_approach_and_largest_pressure_are_right_to_a_factor_of_3() {
     let (mut forces, mut pressures) = (Vec::new(), Vec::new());
@@ -143,7 +145,7 @@ fn estimates_of_force_approach_and_largest_pressure_are_right_to_a_factor_of_3()
                                 row.error.max_pressure.expect("an estimate") / (row.measures.max_pressure - p).abs(),
                             );
                         }
-                        // infinite: there is no estimate, and the report says so
+                        // The exact peak is infinite: there is no estimate, and the report says so.
                         None => {
                             assert!(row.error.max_pressure.is_none(), "{what}");
                             assert_ne!(row.error.untrusted & DiscretisationError::MAX_PRESSURE, 0, "{what}");
@@ -157,8 +159,8 @@ fn estimates_of_force_approach_and_largest_pressure_are_right_to_a_factor_of_3()
     assert_honest(pressures, "largest pressure");
 }
 
-/// The true rms error of the pressures, for a sphere and a flat punch. The exact pressure of an element is the mean of a closed form, Johnson
-/// (4.24) or (3.34), at 8 x 8 points.
+/// The estimated rms error of the pressures is compared with the true one, for a sphere and a flat punch. The exact pressure of an element is the
+/// mean of a closed form, Johnson (4.24) or (3.34), over 8 x 8 points.
 #[test]
 fn estimates_of_the_pressures_are_right_to_a_factor_of_3() {
     let (a, p0) = (0.26_f64.sqrt() / 2.0_f64.sqrt(), 2.0 / PI * (0.13_f64).sqrt());
@@ -185,7 +187,7 @@ fn estimates_of_the_pressures_are_right_to_a_factor_of_3() {
     assert_honest(ratios, "pressures");
 }
 
-/// In the mean of many grids the corrected area has less than half of the error of the counted area, and the estimate is right to a factor of 2.
+/// As a mean over many grids the corrected area has less than half of the error of the counted area, and its estimate is right to a factor of 2.
 #[test]
 fn areas_are_estimated_from_their_outline() {
     let (mut counted, mut corrected, mut estimated) = (0.0, 0.0, 0.0);
@@ -202,7 +204,8 @@ fn areas_are_estimated_from_their_outline() {
     assert!((0.5..2.0).contains(&(estimated / counted)), "{estimated} of {counted}");
 }
 
-/// At the edge of a flat punch pressures are infinite, and the force depends on how its circle lies on the elements.
+/// At the edge of a flat punch pressures are infinite, and the force depends on how the circle of the edge lies on the elements. So these estimates
+/// are marked as not to be trusted.
 #[test]
 fn what_is_singular_is_not_trusted() {
     let (rows, report) = punch().solve(256, false, &estimating(Method::Auto));
@@ -211,7 +214,7 @@ fn what_is_singular_is_not_trusted() {
     assert!(error.max_pressure.is_none() && report.error == error);
 }
 
-/// On surfaces without exact solutions the reference has elements of a quarter of the size.
+/// These surfaces have no exact solution. The reference has elements of a quarter of the side.
 #[test]
 fn estimates_on_rough_surfaces_and_wheel_and_rail_are_not_below_a_third_of_the_error() {
     let tight = Options { tolerance: 1e-8, ..estimating(Method::Auto) };
@@ -225,7 +228,7 @@ fn estimates_on_rough_surfaces_and_wheel_and_rail_are_not_below_a_third_of_the_e
     let (mut runs, mut flagged) = (0, 0);
     for (coarse, fine) in &pairs {
         let load = solve(&fine.scene(), &tight).unwrap().2.measures;
-        // By force and by approach, each with the value of the reference.
+        // Solved by force and by approach, with the values of the reference.
         for load in [Load::Force(load.force), Load::Approach(load.approach)] {
             let found = solve(&coarse.scene_with(load), &tight).unwrap().2;
             let exact = solve(&fine.scene_with(load), &tight).unwrap().2.measures;
@@ -235,7 +238,7 @@ fn estimates_on_rough_surfaces_and_wheel_and_rail_are_not_below_a_third_of_the_e
                 (found.error.max_pressure, found.measures.max_pressure, exact.max_pressure),
             ] {
                 let Some(error) = error else {
-                    // The peak of rough surfaces is not resolved.
+                    // Only rough surfaces have no estimate, for their peak, which the grid does not resolve.
                     assert!(coarse.name.starts_with("rough"), "{}", coarse.name);
                     flagged += 1;
                     continue;
@@ -276,6 +279,6 @@ fn nothing_is_estimated_unless_asked_for() {
     assert!(rows.iter().all(|row| row.error == unknown) && report.error == unknown);
     assert_eq!(report.limit, Limit::Unknown);
     let (_, with) = ellipse().solve(64, false, &estimating(Method::Auto));
-    // the answer is the same to the last bit
+    // The result is the same to the last bit.
     assert_eq!(report.measures.force.to_bits(), with.measures.force.to_bits());
 }

@@ -1,7 +1,7 @@
-//! Estimated errors with edges of the surface within the contact, between elements or on their edges: flat punches.
+//! Estimated errors of surfaces with edges or jumps within the contact, which lie between elements or on their edges.
 //!
-//! A flat punch has `F = k E* d`. For a circle of radius a k is 2 a; a square of side L has `k = pi 0.36679 L`, the capacity of a square
-//! plate over 4 epsilon, known to five digits (Read, J. Comput. Phys. 133, 1997).
+//! A flat punch has `F = k E* d`. For a circle of radius a, k is 2 a. A square of side L has `k = pi 0.36679 L`: the capacity of a square plate over
+//! 4 epsilon, known to five digits (Read, J. Comput. Phys. 133, 1997).
 
 use std::f64::consts::PI;
 
@@ -15,11 +15,11 @@ use crate::support::run;
 
 /// E* = 1.
 const UNIT: Bodies = Bodies { shear_modulus: [0.5, f64::INFINITY], poisson_ratio: [0.0, 0.0] };
-/// k of a square of side 1.
+/// The k of a square of side 1.
 const SQUARE: f64 = PI * 0.36679;
 const HALF: f64 = 0.6;
 const APPROACH: f64 = 0.01;
-/// Sides of the grid, and offsets of the punch from its middle.
+/// The sides of the grid, and the offsets of the punch from the middle of the grid.
 const PLACES: [(f64, [f64; 2]); 3] = [(1.7, [0.0, 0.0]), (1.93, [0.011, -0.007]), (1.61, [-0.013, 0.003])];
 const SIZES: [usize; 6] = [16, 24, 32, 40, 64, 96];
 
@@ -27,7 +27,7 @@ fn estimating() -> Options {
     Options { tolerance: 1e-7, estimates: true, ..Options::default() }
 }
 
-/// A surface at the centres of the elements, with an offset.
+/// The surface `h` at the centres of the elements, with an offset.
 fn at_centres(grid: &Grid, off: [f64; 2], h: &dyn Fn(f64, f64) -> f64) -> Vec<f64> {
     let place = |i: usize, k: usize| (i as f64 - 0.5 * (grid.mx - 1) as f64) * grid.dx + off[k];
     (0..grid.len()).map(|i| h(place(i % grid.mx, 0), place(i / grid.mx, 1))).collect()
@@ -100,7 +100,7 @@ fn an_accuracy_is_kept_by_a_punch_whose_edges_fall_between_elements() {
     }
 }
 
-/// The grid of each row has the accuracy of the row.
+/// The grid that a row of the price list names has the accuracy of the row.
 #[test]
 fn price_lists_of_a_punch_whose_edges_fall_between_elements_name_grids_that_do() {
     let force = 2.0 * HALF * SQUARE * APPROACH;
@@ -118,7 +118,7 @@ fn price_lists_of_a_punch_whose_edges_fall_between_elements_name_grids_that_do()
         assert_eq!(stop, Outcome::Converged);
         for row in rows {
             let grid = row.grid.expect("a grid");
-            // The tolerance, a tenth of the target, adds to the error of the grid.
+            // The tolerance of the solve is a tenth of the target, and adds to the error of the grid.
             assert!(
                 row.obstacle.is_none() && row.error.is_some_and(|error| error <= 1.1 * row.target),
                 "{n} {side}: {row:?}"
@@ -131,7 +131,7 @@ fn price_lists_of_a_punch_whose_edges_fall_between_elements_name_grids_that_do()
     }
 }
 
-/// Without a callback the given elements are the surface: their edges are exact, and need no finer grid.
+/// Without a surface callback the given elements are the surface. Their edges are exact, and need no finer grid.
 #[test]
 fn edges_of_elements_that_are_given_are_exact() {
     let n = 16;
@@ -180,7 +180,7 @@ fn a_limit_that_is_not_reached_leaves_the_estimates() {
             (error.contact_area, plain.error.contact_area),
             (error.pressure, plain.error.pressure),
         ] {
-            // Iterations differ, and so do estimates by the tolerance.
+            // The iterations differ, and so the estimates differ by the tolerance.
             let [limited, plain] = [limited, plain].map(|error| error.expect("an estimate"));
             assert!((limited / plain - 1.0).abs() < 1e-3, "{limit:?}: {limited}, {plain} without");
         }
@@ -190,7 +190,7 @@ fn a_limit_that_is_not_reached_leaves_the_estimates() {
     assert!(report(&scene).error.force.is_none());
 }
 
-/// Jumps have their own estimate. A wave of few elements is no jump, whatever its length.
+/// The estimate of jumps in the surface: a wave of few elements counts as no jump, whatever its length.
 #[test]
 fn jumps_are_found_and_waves_are_not() {
     let m = 96;
@@ -224,8 +224,8 @@ fn with_coefficients(m: usize, factor: f64, of: &dyn Fn(f64, f64) -> f64) -> (So
     run(&Scene { patches, layer, ..Scene::new(grid, &h, bodies, Load::Approach(0.12)) }, &estimating())
 }
 
-/// Pressures are singular where patches meet, and on the stiffer side of a jump of a layer. The reference is extrapolated from grids with errors of
-/// first order.
+/// Pressures are singular where patches meet, and on the stiffer side of a jump in a layer's compliance. Errors are then of first order, and the
+/// reference is extrapolated from two grids.
 #[test]
 fn the_error_beside_jumps_of_the_coefficients_is_covered() {
     let halves = [(0.0, [0.0; 2]), (0.3, [0.0; 2]), (0.8, [0.0; 2])];
@@ -242,13 +242,13 @@ fn the_error_beside_jumps_of_the_coefficients_is_covered() {
             assert!(error >= off, "{factor} {compliances:?} {m}: off by {off:e}, estimated {error:e}");
             ratios.push(error / off);
         }
-        // On some grids the errors of the jump and of the bend nearly cancel.
+        // On some grids the error by the jump and that by the curvature at the rim nearly cancel, so that single ratios are large.
         ratios.sort_by(f64::total_cmp);
         assert!(ratios[2] <= 12.0, "{factor} {compliances:?}: {ratios:?}");
     }
 }
 
-/// Compliances without a jump do not change the relative errors: slopes, and noise of a few per cent.
+/// Compliances of a layer that do not jump, but have slopes or a noise of a few per cent, have the relative errors of a uniform one.
 #[test]
 fn compliances_that_do_not_jump_have_the_errors_of_one() {
     let noise = |x: f64, y: f64| 1.0 + 1e-9 * (1e3 * (3.0 * x + 5.0 * y)).sin();
@@ -273,7 +273,8 @@ fn compliances_that_do_not_jump_have_the_errors_of_one() {
     }
 }
 
-/// Before a step of the first cycle the pressures do not carry the force, so that no error of the area follows from that of the force.
+/// If a solve is cut short in the first cycle, the pressures do not carry the force, so that no error of the area follows from that of the force.
+/// Estimates must be numbers or unknown then.
 #[test]
 fn errors_of_a_solve_that_is_cut_short_are_numbers() {
     let mut count = 0;

@@ -1,4 +1,4 @@
-//! Estimated errors on kinds of surfaces that are hard to estimate: sharp peaks among shallow contacts, flat punches by force and by approach, a
+//! Estimated errors on surfaces for which errors are hard to estimate: sharp peaks among shallow contacts, flat punches by force and by approach, a
 //! contact that the border of the grid cuts.
 
 use std::f64::consts::PI;
@@ -21,14 +21,14 @@ fn grid(side: f64) -> Grid {
     Grid::new(M, M, side / M as f64, side / M as f64).expect("a grid")
 }
 
-/// The distances at the centres of the elements, relative to the middle of the grid.
+/// The undeformed distances at the centres of the elements, with coordinates from the middle of the grid.
 fn at_centres(grid: &Grid, h: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     let place = |k: usize| (k as f64 - 0.5 * (M as f64 - 1.0)) * grid.dx;
     (0..M * M).map(|i| h(place(i % M), place(i / M))).collect()
 }
 
-/// Balls in square cells that do not interact (patches), so that each is one of Hertz: `sharp` of them are pressed in by the approach and have a
-/// contact radius of some elements, the others are broad and hardly touch. The arrays of the scene, and the force.
+/// Balls in square cells that do not interact (as patches), so that each is a contact of Hertz. Of the balls `sharp` are pressed in by the full
+/// approach, and have a contact radius of some elements. The others are broad and hardly touch. The arrays of the scene, and the exact force.
 struct Balls {
     h: Vec<f64>,
     patch: Vec<i32>,
@@ -38,8 +38,8 @@ struct Balls {
 
 const APPROACH: f64 = 0.01;
 
-/// `radius`: that of the sharp contacts, in elements. `depth`: that of the others, relative to the approach. `off`: offsets of the centres from the
-/// middle of cells.
+/// Makes the scene. `radius`: the contact radius of the sharp balls, in elements. `depth`: the depth of the other balls, relative to the approach.
+/// `off`: the offset of the centres from the middle of the cells.
 fn balls(cells: usize, sharp: usize, radius: f64, depth: f64, off: f64) -> Balls {
     let (d, cell) = (1.0 / M as f64, 1.0 / cells as f64);
     let mut balls = Balls { h: vec![0.0; M * M], patch: vec![0; M * M], count: cells * cells, force: 0.0 };
@@ -50,7 +50,7 @@ fn balls(cells: usize, sharp: usize, radius: f64, depth: f64, off: f64) -> Balls
         let k = iy * cells + ix;
         let (a, depth) = of(k);
         let (u, v) = (x - (ix as f64 + 0.5) * cell - off * d, y - (iy as f64 + 0.5) * cell + 0.7 * off * d);
-        // a^2 = R depth.
+        // Hertz: a^2 = R depth.
         *h = (u * u + v * v) * depth / (2.0 * a * a) + APPROACH - depth;
         *patch = k as i32;
     }
@@ -77,17 +77,19 @@ fn sharp_peaks_among_shallow_contacts_are_covered() {
             let patches = Patches { patch: &patch, count, factors: &alone };
             let report = report(&Scene { patches: Some(patches), ..Scene::new(grid(1.0), &h, UNIT, load) });
             let ratio = report.error.force.expect("an estimate") / (report.measures.found(load) - exact).abs();
-            // The error of forces is 0.5 of the bend, within a third (docs/notes): 0.58/0.67 is 0.87, and less on few elements.
+            // The bend is the measure of curvature at the rim from which the library estimates the error. The error of forces is half of the bend,
+            // within a third (docs/notes), at most 0.67. The library estimates 0.58 of the bend, and 0.58/0.67 is 0.87. On few elements the ratio is
+            // less.
             assert!(ratio >= 0.75, "{sharp} {radius} {depth} {off} {load:?}: {ratio}");
             ratios.push(ratio);
         }
     }
     ratios.sort_by(f64::total_cmp);
-    // Estimates are not far above the errors either.
+    // The estimates are not far above the errors, either.
     assert!(ratios[ratios.len() / 2] <= 4.0, "{ratios:?}");
 }
 
-/// F is proportional to the approach, so that relative errors are equal, whichever load is given.
+/// For a flat punch F is proportional to the approach, so that relative errors are equal, whichever of them is given.
 #[test]
 fn errors_of_a_flat_punch_are_the_same_by_force_and_by_approach() {
     let grid = grid(1.93);
@@ -97,11 +99,12 @@ fn errors_of_a_flat_punch_are_the_same_by_force_and_by_approach() {
     let by_force = report(&Scene::new(grid, &h, UNIT, Load::Force(force)));
     let [of_force, of_approach] = [(&by_approach, force), (&by_force, by_force.measures.approach)]
         .map(|(report, value)| report.error.force.expect("an estimate") / value);
-    // Here h is constant, so that only round-off and the residual differ.
+    // h is constant, so that only round-off and the residual differ.
     assert!((of_force / of_approach - 1.0).abs() < 1e-3, "{of_force} {of_approach}");
 }
 
-/// Pressures at the border are infinite: no largest pressure of a grid is near to that, wherever its peak is.
+/// If the border of the grid cuts the contact, pressures at the border are infinite. The largest pressure on a grid is no approximation then,
+/// wherever its peak is.
 #[test]
 fn a_peak_beside_a_cut_contact_is_not_trusted() {
     let grid = grid(1.0);
@@ -112,10 +115,10 @@ fn a_peak_beside_a_cut_contact_is_not_trusted() {
     }
 }
 
-/// The depth of the wave.
+/// The amplitude of the wave.
 const DEPTH: f64 = 0.01;
 
-/// A wave along x, or along y if `turned`. `place` is that of its crest, relative to the middle.
+/// The report of a wave along x, or along y if `turned`. `place`: the place of its crest from the middle, in periods.
 fn of_wave((mx, my): (usize, usize), turned: bool, place: f64, load: Load) -> Report {
     let of = |k: usize| DEPTH * (1.0 - (2.0 * PI * ((k as f64 + 0.5) / mx as f64 - 0.5 - place)).cos());
     let (nx, ny) = if turned { (my, mx) } else { (mx, my) };
@@ -125,8 +128,8 @@ fn of_wave((mx, my): (usize, usize), turned: bool, place: f64, load: Load) -> Re
     report(&Scene { period, ..Scene::new(grid, &h, UNIT, load) })
 }
 
-/// Westergaard's wave (1939): the approach of the mean planes is `(p/pi)(1 - log(p/p*))` for the mean pressure `p = p* sin^2(pi c/2)`. Its derivative
-/// is unbounded as the part c in contact tends to 1.
+/// Westergaard's wave (1939): for the mean pressure `p = p* sin^2(pi c/2)`, with c the part of the period in contact, the mean planes approach by
+/// `(p/pi)(1 - log(p/p*))`. Its derivative is unbounded as c tends to 1.
 #[test]
 fn errors_of_a_wave_are_covered_up_to_full_contact() {
     let closing = PI * DEPTH;
@@ -139,12 +142,11 @@ fn errors_of_a_wave_are_covered_up_to_full_contact() {
                 let of = |turned, place| of_wave((mx, my), turned, place, load);
                 let report = of(false, 0.0);
                 let ratio = report.error.force.expect("an estimate") / (report.measures.found(load) - exact).abs();
-                // The error is half of the bend, within a third (docs/notes), and 0.58 of the bend is estimated: 0.58/0.67 is 0.87, and less on few
-                // elements, as for the balls above.
+                // As for the balls above, the error is at most 0.67 of the bend and 0.58 of it is estimated, which is 0.87; on few elements less.
                 assert!(ratio >= 0.75, "{part} of {mx} x {my}, {load:?}: {ratio}");
                 ratios.push(ratio);
-                // The estimate does not depend on where the period begins, or on the direction, up to round-off of sums and the residual of 1e-8.
-                // With 64 rows in contact or more only some are used.
+                // The estimate does not depend on where the period begins, or on the direction, up to the round-off of sums and the residual of 1e-8.
+                // With 64 rows in contact or more the library uses only some of the rows, so that the direction matters.
                 let along_y = (part * mx as f64 + 1.0 < 64.0).then(|| of(true, 0.0));
                 for other in [of(false, 0.5)].into_iter().chain(along_y) {
                     let [other, own] = [&other, &report].map(|report| report.error.force.expect("an estimate"));
@@ -158,8 +160,8 @@ fn errors_of_a_wave_are_covered_up_to_full_contact() {
     assert!(ratios[ratios.len() / 2] <= 4.0, "{ratios:?}");
 }
 
-/// A ball with one side lower by a step: the contact ends at the step, where elements have a second difference as large as the step. This is no bend,
-/// and must not enter the estimate.
+/// A ball with one side lower by a step. The contact ends at the step, where the second difference of h is as large as the step. This must not count
+/// as a bend of the outline in the estimate.
 #[test]
 fn errors_beside_a_step_fall_with_the_elements() {
     let of_grid = |m: usize, slope: f64, load: Load| {
@@ -175,9 +177,9 @@ fn errors_beside_a_step_fall_with_the_elements() {
         for k in 0..2 {
             let [finer, error] = [k + 1, k].map(|k| found[k].error.force.expect("an estimate"));
             let ratio = finer / error;
-            // A half and a quarter in turn, changed by steps of the outline.
+            // From grid to grid the error falls to a half or to a quarter, with changes by steps of the outline.
             assert!((0.2..0.6).contains(&ratio), "{slope} {load:?}: {ratio}");
-            // The finest grid has an error as well, at most a quarter of this one.
+            // The finest grid serves as the reference. Its own error is at most a quarter of this one.
             assert!(
                 error >= 0.75 * (value(k) - value(3)).abs(),
                 "{slope} {load:?}: {error} of {}",
@@ -187,8 +189,8 @@ fn errors_beside_a_step_fall_with_the_elements() {
     }
 }
 
-/// With two periods the mean of all displacements is 0: near full contact it does not give the stiffness, with a layer not even its sign. The error
-/// is then a number or unknown.
+/// With two periods the mean of all displacements is 0. Near full contact the mean does not give the stiffness, and with a layer not even its sign.
+/// The error must then be a number or unknown.
 #[test]
 fn errors_near_full_contact_of_two_periods_are_numbers_or_unknown() {
     let grid = grid(1.0);
@@ -214,8 +216,9 @@ fn errors_near_full_contact_of_two_periods_are_numbers_or_unknown() {
     }
 }
 
-/// Where an element gives way more than a half-space, the rim has no bias, and the error of the corrected area is the whole correction: below a layer, a thin
-/// coating that stands for this layer, and a table of coefficients with its compliance on the diagonal.
+/// Where an element gives way more than on a half-space, the rim has no bias, and the error of the corrected area is the whole correction. Besides a
+/// plain scene there are three of this kind: with a layer, with a thin coating that acts as this layer, and with a table of coefficients that has its
+/// compliance on the diagonal.
 #[test]
 fn corrected_areas_of_compliant_elements_have_the_error_of_the_correction() {
     let (thickness, modulus, ratio) = (0.01, 0.005, 0.3);
@@ -253,7 +256,7 @@ fn corrected_areas_of_compliant_elements_have_the_error_of_the_correction() {
             }
         }
         println!("{kind}: mean {:.2}, above 1: {above} of 12", sum / 12.0);
-        // The estimate is a deviation, not a bound: a tenth of 240 areas exceeds it. Before this error it was the half.
+        // The estimate is a standard deviation, not a bound: a tenth of 240 areas exceeded it. Before this estimate was added, half of them did.
         assert!(sum / 12.0 <= 0.8 && above <= 2, "{kind}: {sum} {above}");
     }
 }

@@ -1,4 +1,4 @@
-//! V-cycles with the FFT smoother converge on contact areas of any shape, to the pressures of NORM.
+//! V-cycles with the FFT smoother converge on contact areas of any shape, and give the pressures of NORM.
 
 use super::dense;
 use crate::paper as case;
@@ -20,13 +20,13 @@ use crate::families::case::Random;
 const BODIES: Bodies = Bodies { shear_modulus: [0.5, f64::INFINITY], poisson_ratio: [0.0, 0.0] };
 const TOLERANCE: f64 = 1e-8;
 
-/// V(1,1) with the FFT smoother.
+/// Options of V(1,1) cycles with the FFT smoother.
 fn options(method: Method) -> Options {
     let cycle = CycleShape { smoother: SmootherKind::Fft, ..CycleShape::default() };
     Options { method, cycle, tolerance: TOLERANCE, max_cycles: 200, ..Options::default() }
 }
 
-/// NORM with a tighter tolerance than the compared solve.
+/// Options of NORM, with a tighter tolerance than that of the solve that is compared.
 fn norm() -> Options {
     Options { method: Method::Norm, tolerance: 1e-2 * TOLERANCE, max_cycles: 50_000, ..Options::default() }
 }
@@ -39,9 +39,9 @@ fn on_contact(scene: &Scene<'_>, options: Options, contact: &[bool]) -> (Solver,
     (solver, stop, report)
 }
 
-/// The 2-norm of the difference of the pressures is at most the condition number of A times the relative residuals. The eigenvalues of A are
-/// inversely proportional to wave numbers, from one wave on the grid to half a wave per element. So the condition number is about the larger number
-/// of elements in a row or column times the aspect ratio of the elements; twice that is allowed.
+/// Asserts that two results have the same pressures. The 2-norm of their difference is at most the condition number of A times the relative
+/// residuals. The eigenvalues of A are inversely proportional to wave numbers, from one wave on the grid to half a wave per element. So the condition
+/// number is about the larger number of elements in a row or column times the aspect ratio of the elements; twice that is allowed.
 fn assert_same_pressures(a: &Solver, b: &Solver, what: &str) {
     let grid = a.state().grid;
     let aspect = (grid.dx / grid.dy).max(grid.dy / grid.dx);
@@ -69,7 +69,7 @@ fn the_linear_system_of_the_paper_takes_no_more_cycles_than_with_gauss_seidel() 
             fft.count.cycles,
             gauss_seidel.count.cycles
         );
-        // Three products a cycle, that of the certificate, and that of the start.
+        // Each cycle takes three products; the certificate and the start take one each.
         assert!(fft.count.matrix_products <= 3 * fft.count.cycles + 2, "{m}: {} products", fft.count.matrix_products);
     }
 }
@@ -111,7 +111,7 @@ fn the_rough_surface_is_solved() {
                 assert_converged(stop, &report, &what);
                 assert_same_pressures(&solver, &reference, &what);
                 assert!(report.count.cycles < 40, "{what}: {} cycles", report.count.cycles);
-                // 10 to 25 to 1e-8
+                // 10 to 25 cycles were measured to reach 1e-8.
             }
             let contact = &reference.state().contact;
             let (solver, stop, report) = on_contact(scene, options(Method::Multigrid), contact);
@@ -121,7 +121,7 @@ fn the_rough_surface_is_solved() {
     }
 }
 
-/// Spots of all sizes, with holes, that fill about a part `fill` of the grid.
+/// A contact area of spots of all sizes, with holes. It fills about the part `fill` of the grid.
 fn spots(grid: &Grid, fill: f64, random: &mut Random) -> Vec<bool> {
     let mut contact = vec![false; grid.len()];
     while contact.iter().filter(|&&inside| inside).count() < (fill * grid.len() as f64) as usize {
@@ -192,7 +192,8 @@ fn lines_ragged_grids_and_slender_elements_are_solved() {
 
 #[test]
 fn no_cycle_raises_the_energy() {
-    // (v, A v)/2 - (d, v), with relaxations up to the limit of 2, on sets where a fixed step length diverges.
+    // The energy (v, A v)/2 - (d, v) does not grow in any cycle, with relaxation factors up to nearly 2, on contact areas on which a fixed step
+    // length diverges.
     let mut random = Random(11);
     let grid = Grid::new(40, 56, 1.0, 1.0).unwrap();
     let influence = Coefficients::from(HalfSpace::new(1.0, 1.0, 1.0));
@@ -210,14 +211,14 @@ fn no_cycle_raises_the_energy() {
             assert!(v.iter().zip(&contact).all(|(v, &inside)| inside || *v == 0.0));
             dense::apply(&influence, &grid, &v, &mut u);
             let energy: f64 = (0..v.len()).map(|i| v[i] * (0.5 * u[i] - d[i])).sum();
-            // round-off of a sum of terms of that size
+            // The tolerance is the round-off of a sum of terms of that size.
             assert!(energy <= before + 1e-13 * before.abs(), "{fill}, {relaxation}: {energy} after {before}");
             before = energy;
         }
     }
 }
 
-/// A table of `f(kx, ky)` for a grid.
+/// A table of the coefficients `f(kx, ky)` for a grid.
 fn table(grid: &Grid, f: impl Fn(i64, i64) -> f64) -> Table {
     let (cx, cy) = (grid.mx as i64, grid.my as i64);
     let values: Vec<f64> =
@@ -247,7 +248,7 @@ fn a_sweep_leaves_the_true_residual_and_product() {
                 let Smoother::Fft(fft) = &smoother else { panic!("another smoother") };
                 for i in 0..grid.len() {
                     let expected = if contact[i] { b[i] - u[i] } else { 0.0 };
-                    // round-off of a few sums of terms of order 1
+                    // The tolerance is the round-off of a few sums of terms of order 1.
                     assert!((residual[i] - expected).abs() <= 1e-12, "{mx} x {my}: {} for {expected}", residual[i]);
                     assert!((fft.product()[i] - u[i]).abs() <= 1e-12);
                 }
@@ -261,7 +262,7 @@ fn tables_without_a_positive_circulant_or_without_symmetry_give_no_wrong_result(
     let grid = Grid::new(20, 16, 1.0, 1.0).unwrap();
     let distance = |kx: i64, ky: i64| ((kx * kx + ky * ky) as f64).sqrt();
     let cases = [
-        // The circulant is negative for some waves, as A itself may be on large contact areas.
+        // The circulant has negative eigenvalues for some waves, as A itself may have on large contact areas.
         (
             "box",
             table(&grid, |kx, ky| {
@@ -274,7 +275,7 @@ fn tables_without_a_positive_circulant_or_without_symmetry_give_no_wrong_result(
                 }
             }),
         ),
-        // Positive definite, but the circulant of period m adds the ends of the table with a negative sign.
+        // A is positive definite. But the circulant of period m adds the ends of the table with a negative sign.
         (
             "waves",
             table(&grid, |kx, ky| {
@@ -318,7 +319,7 @@ fn tables_without_a_positive_circulant_or_without_symmetry_give_no_wrong_result(
                 let mut u = vec![0.0; grid.len()];
                 dense::apply(&influence, &grid, &state.p, &mut u);
                 let e = |i: usize| h[i] - state.approach + u[i];
-                // Symmetric positive definite tables converge without M as well; the others may give up.
+                // Symmetric positive definite tables converge even without the preconditioner M. For the others the solve may give up.
                 assert!(what != "waves" || stop == Outcome::Converged, "{what}, {load:?}, {method:?}: {stop:?}");
                 assert!(state.p.iter().all(|p| p.is_finite() && *p >= 0.0));
                 if stop == Outcome::Converged {
@@ -331,7 +332,7 @@ fn tables_without_a_positive_circulant_or_without_symmetry_give_no_wrong_result(
                             assert!(state.p[i] == 0.0 && e(i) > -1e-6, "{what}: {} at {i}", e(i));
                         }
                     }
-                    // the criterion, and round-off
+                    // The tolerance of the solve, and .1 % of it for round-off.
                     assert!(rr.sqrt() <= 1.001 * TOLERANCE * hh.sqrt(), "{what}: {}", (rr / hh).sqrt());
                 }
             }

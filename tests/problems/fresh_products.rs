@@ -1,4 +1,4 @@
-//! A step by force from the last solution that needs no iteration has its own product: u is not that of the last step, scaled.
+//! If a step by force from the last solution needs no iteration, its u is a product of its own, not the scaled u of the last step.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
@@ -9,7 +9,7 @@ use super::dense;
 #[test]
 fn loads_that_only_scale_are_certified_by_a_product() {
     let grid = Grid::new(24, 20, 1.0, 1.0).unwrap();
-    // A flat punch: pressures are those of the last step, times a number.
+    // A flat punch, whose pressures are those of the last step times a number.
     let mut h = vec![0.0; grid.len()];
     h[..3 * grid.mx].fill(f64::INFINITY);
     let scene = |force| Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(force));
@@ -27,12 +27,13 @@ fn loads_that_only_scale_are_certified_by_a_product() {
         let mut u = vec![0.0; h.len()];
         dense::apply(&scene(1.0).coefficients().unwrap(), &grid, &state.p, &mut u);
         let largest = u.iter().copied().fold(0.0, f64::max);
-        // The accuracy of products by FFT, after any number of steps.
+        // u has the accuracy of one FFT product, some units of round-off, after any number of steps.
         assert!(u.iter().zip(&state.u).all(|(a, b)| (a - b).abs() <= 4e-15 * largest), "{method:?}");
     }
 }
 
-/// 88 elements in contact are too many for the direct solve, which ends without a product. p and u are extrapolated from the last two solutions.
+/// 88 elements in contact are too many for the direct solve. p and u are extrapolated from the last two solutions, and need no iteration; u must
+/// still be a product.
 #[test]
 fn loads_to_and_fro_are_certified_by_a_product() {
     let grid = Grid::new(25, 13, 1.0, 1.0).unwrap();

@@ -1,6 +1,8 @@
-//! Full contact with two periods, in which the contact has no edge: its grids still have enough elements, and its approach has an error.
+//! Full contact with two periods. The contact has no edge, whose outline would give an error estimate. Still searches and price lists choose grids
+//! with enough elements, and the approach has an error.
 //!
-//! The approach by force is the mean of the undeformed distance: 0.01 for `0.01 (1 - cos x cos y)` on any grid of two elements and more each way.
+//! If the force is given, the approach is the mean of the undeformed distance: 0.01 for `0.01 (1 - cos x cos y)`, on any grid of two or more elements
+//! each way.
 
 use std::f64::consts::PI;
 
@@ -12,7 +14,7 @@ use contact_normal::solver::{
 
 const LENGTH: f64 = 6.4;
 const AMPLITUDE: f64 = 0.01;
-/// The mean pressure is 24000, a quarter of E*. Full contact takes `pi sqrt(2) E* 0.01/6.4`, some 700.
+/// The mean pressure is 24000, a quarter of E*. Full contact needs `pi sqrt(2) E* 0.01/6.4`, some 700.
 const FORCE: f64 = 1e6;
 
 fn on(m: usize) -> Grid {
@@ -60,7 +62,7 @@ fn price_lists_name_grids_of_enough_elements() {
     assert!(row.obstacle.is_none() && found.mx >= Quantity::MaxVonMises.enough_across(), "{row:?}");
 }
 
-/// A search from one element, whose distance is that at the middle, 0.
+/// A search that starts from one element sees only the distance in the middle, which is 0.
 #[test]
 fn a_search_goes_on_to_enough_elements() {
     for m in [1, 2, 4] {
@@ -77,7 +79,7 @@ fn a_search_goes_on_to_enough_elements() {
     }
 }
 
-/// A line of waves on one row of elements is uniform across the row, so that one row is enough.
+/// A wave along a single row of elements is uniform across the row, so that one row suffices.
 #[test]
 fn one_row_of_elements_is_enough_across_a_line() {
     let grid = Grid::new(64, 1, LENGTH / 64.0, LENGTH).expect("a grid");
@@ -89,7 +91,7 @@ fn one_row_of_elements_is_enough_across_a_line() {
     assert_eq!(found.solver.expect("a result").grid().my, 1);
 }
 
-/// Flat plates: the approach is their distance, also if it is 0, and its error is that of the residual on each grid.
+/// The approach of flat plates is their distance, even if it is 0. Its error on each grid is that of the residual.
 #[test]
 fn the_approach_of_flat_plates_is_exact() {
     let grid = on(64);

@@ -1,5 +1,5 @@
-//! Hard cases: the right answer or a clear status, never a NaN. There is one file per family in families/; the tests here are of one method or one
-//! option each.
+//! Hard cases end with the right answer or a clear status, never with a NaN. Each file in families/ has one family of cases; each test here is of one
+//! method or one option.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -113,8 +113,8 @@ fn elements_without_a_surface_stay_exterior() {
 
 #[test]
 fn a_flat_punch_and_full_contact_are_solved() {
-    // Full contact with a flat face: the stiffness of a square punch of side 2a on a half-space is 2.2 E* a to about 3 %
-    // (Borodachev; between the inscribed circle's 2 E* a and the circumscribed one's 2.83 E* a).
+    // Full contact of a flat face. The stiffness of a square punch of side 2a on a half-space is 2.2 E* a to about 3 % (Borodachev), between 2 E* a
+    // of the inscribed circle and 2.83 E* a of the circumscribed one.
     let grid = Grid::new(64, 64, 1.0 / 32.0, 1.0 / 32.0).unwrap();
     let h = vec![0.0; grid.len()];
     for load in [Load::Approach(0.01), Load::Force(0.022)] {
@@ -128,7 +128,7 @@ fn a_flat_punch_and_full_contact_are_solved() {
 
 #[test]
 fn a_unit_of_length_or_pressure_changes_no_digit() {
-    // Powers of two, as between units, give the same bits.
+    // Units that differ by powers of two give the same bits.
     let grid = Grid::new(50, 41, 0.11, 0.09).unwrap();
     let h = paraboloid(&grid, 0.2);
     for load in [Load::Approach(0.3), Load::Force(2.0)] {
@@ -179,7 +179,7 @@ fn very_tight_tolerances_end() {
                 solve(&Scene::new(grid, &h, rigid_on(1.0), Load::Approach(0.2)), &options).unwrap();
             let residual = report.measures.certificate.residual;
             assert!(solver.state().p.iter().all(|p| p.is_finite()));
-            // The round-off of a product is about 1e-15 of u; a status OK must still be true.
+            // The round-off of a product is about 1e-15 of u. A status OK must still be true.
             assert!(residual <= 1e-12, "{method:?} {tolerance}: {residual} after {stop:?}");
             assert_eq!(
                 stop == Outcome::Converged,
@@ -194,7 +194,7 @@ fn very_tight_tolerances_end() {
 fn a_fixed_contact_area_is_solved_with_pressures_of_either_sign() {
     let grid = Grid::new(20, 20, 0.1, 0.1).unwrap();
     let h = paraboloid(&grid, 1.0);
-    // The fixed area is far larger than the contact area, so that its rim is in tension.
+    // The fixed area is much larger than the contact area would be, so that its rim is in tension.
     let contact: Vec<bool> = h.iter().map(|h| *h <= 0.6).collect();
     let zero = vec![0.0; grid.len()];
     for load in [Load::Approach(0.1), Load::Force(0.05)] {
@@ -252,8 +252,8 @@ fn a_solved_problem_is_a_good_guess_and_a_nonsense_guess_does_no_harm() {
     }
 }
 
-/// One product for each iteration. In addition: the start, the correction of truncations, the end of the round, and the certificate. Another round to
-/// confirm the update would take two more.
+/// Each iteration takes one product. The start, the correction of truncations, the end of the iteration and the certificate take one each. If the
+/// UPDATE criterion were confirmed by another iteration, it would take two more.
 #[test]
 fn the_update_criterion_costs_no_round_of_its_own_in_double_precision() {
     let grid = Grid::new(96, 64, 0.1, 0.1).unwrap();
@@ -287,7 +287,7 @@ fn the_update_criterion_means_the_last_change_of_the_pressures() {
         let rms = (state.p.iter().map(|p| p * p).sum::<f64>() / state.contact_count() as f64).sqrt();
         assert_eq!(stop, Outcome::Converged);
         assert!(report.count.update <= 1e-5 * rms, "{method:?}: {} of {rms}", report.count.update);
-        // After a stop by updates the error is an update over (1 - convergence factor).
+        // After a stop by the UPDATE criterion the error is about the update over (1 - convergence factor).
         assert!(report.measures.certificate.residual <= 1e-4);
     }
 }
@@ -377,14 +377,14 @@ fn few_elements_are_solved_directly() {
         let (solver, stop, report) = solve(&Scene::new(grid, &h, rigid_on(3.0), load), &options).unwrap();
         assert_eq!(stop, Outcome::Converged);
         assert!(solver.state().contact_count() > 1);
-        // The residual of the direct solve is round-off; iterations would stop at the tolerance.
+        // The direct solve reaches the round-off of the residual; iterations would stop at the tolerance.
         let residual = report.measures.certificate.residual;
         assert!(residual <= 1e-13 && report.measures.certificate.violation == 0.0, "{load:?}: {residual:e}");
     }
 }
 
-/// Under a prescribed approach the uniform part of the residual is removed along the last change, so that a step takes about as many iterations as
-/// under the force that it leads to.
+/// If the approach is given, the library removes the uniform part of the residual along the last change of the solution. So a step takes about as
+/// many iterations as the step under the force that it leads to.
 #[test]
 fn time_steps_by_approach_take_as_many_iterations_as_by_force() {
     let grid = Grid::new(120, 130, 0.5, 0.25).unwrap();
@@ -412,8 +412,8 @@ fn time_steps_by_approach_take_as_many_iterations_as_by_force() {
     assert!(by_approach <= 1.15 * by_force, "{by_approach} iterations by approach, {by_force} by force");
 }
 
-/// If C shrinks, a step takes three products in addition to its iterations: those of the truncated prediction, of the elements of the last change
-/// that leave C, and of one certificate. A step along the last change in each iteration makes the first certificate hold.
+/// If C shrinks, a step takes three products besides its iterations: those of the truncated prediction, of the elements of the last change that leave
+/// C, and of one certificate. Because each iteration also minimises along the last change, the first certificate holds.
 #[test]
 fn a_step_in_time_needs_one_certificate() {
     let grid = Grid::new(1024, 1024, 20.0 / 1024.0, 12.0 / 1024.0).unwrap();
@@ -456,15 +456,15 @@ fn time_steps_begin_with_what_the_last_ones_changed() {
             let scale = reference.measures.max_pressure;
             let pairs = solver.state().p.iter().zip(&from_nothing.state().p);
             let difference = pairs.map(|(p, q)| (p - q).abs()).fold(0.0, f64::max);
-            // Two solutions with residuals of 1e-6 may differ by this at the rim.
+            // Two solutions with residuals of 1e-6 may differ by 1e-3 of the largest pressure at the rim.
             assert!(difference <= 1e-3 * scale, "step {step}: {difference} of {scale}");
             if step >= 2 {
                 let (warm, cold) = (report.count.work_units, reference.count.work_units);
                 assert!(warm < 0.8 * cold, "step {step}: {warm} work units, {cold} from nothing");
             }
         }
-        // The same load again: nothing is left to do. By approach this needs no product; by force it needs one, unless the sum of p is the force to
-        // the last digit.
+        // With the same load again nothing is left to do. By approach this takes no product. By force it takes one, unless the sum of p is the force
+        // to the last digit.
         let scene = Scene::new(grid, &h, rigid_on(3.0), load(4));
         let (stop, report) = solver.solve(&scene, &next, None, None).unwrap();
         assert_eq!((stop, report.count.cycles), (Outcome::Converged, 0));
@@ -473,7 +473,8 @@ fn time_steps_begin_with_what_the_last_ones_changed() {
     }
 }
 
-/// A flat punch, displaced by less than the round-off of its distance: no pressures can be certified, and none are called a solution unless they are.
+/// A flat punch is displaced by less than the round-off of its distance. Its pressures cannot be certified in general, and the status is OK only if
+/// they are.
 #[test]
 fn displacements_below_the_round_off_of_distances_are_not_called_solved() {
     let grid = Grid::new(24, 24, 1.0, 1.0).unwrap();
@@ -494,7 +495,7 @@ fn displacements_below_the_round_off_of_distances_are_not_called_solved() {
     }
 }
 
-/// One element carries the force whatever its displacement.
+/// One element carries a given force, even if its displacement is below the round-off of its distance.
 #[test]
 fn one_element_carries_a_force_whose_displacement_is_below_round_off() {
     let point = (Grid::new(1, 1, 1.0, 1.0).unwrap(), vec![1.0]);

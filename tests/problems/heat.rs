@@ -1,4 +1,4 @@
-//! Flash temperatures compared with closed forms, and with an integral in polar coordinates.
+//! Flash temperatures, compared with closed forms and with integrals in polar coordinates.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,8 @@ fn found(grid: Grid, flux: &[f64], speed: [f64; 2], share: Option<f64>) -> Flash
     flash_temperature(&heat, &Threads::One).expect("temperatures")
 }
 
-/// At rest: T = pi q0 a/(4 lambda) in the middle of q0 sqrt(1 - r^2/a^2) (Love's integral of 1/(2 pi lambda r), as for Hertz).
+/// A source q0 sqrt(1 - r^2/a^2) at rest: in the middle T = pi q0 a/(4 lambda), by the same integral of 1/r as Hertz' displacement, here with the
+/// factor 1/(2 pi lambda).
 #[test]
 fn a_source_at_rest_is_as_warm_as_hertz_is_deep() {
     let (a, q0, n) = (1e-3, 1e7, 129);
@@ -22,13 +23,13 @@ fn a_source_at_rest_is_as_warm_as_hertz_is_deep() {
         (0..n * n).map(|i| q0 * (1.0 - (at(i % n).powi(2) + at(i / n).powi(2)) / (a * a)).max(0.0).sqrt()).collect();
     let rest = found(grid, &flux, [0.0; 2], Some(1.0));
     let exact = PI * q0 * a / (4.0 * 50.0);
-    // The error is of second order in the elements, of which the radius has 58.
+    // The error is of second order in the element, which is 1/58 of the radius.
     assert!((rest.largest[0] / exact - 1.0).abs() < 1e-3, "{} {exact}", rest.largest[0]);
     assert!(rest.at[0] == 64 * n + 64 && rest.largest[1] == 0.0 && rest.share == 1.0);
 }
 
-/// A fast band: T = 2 q/lambda sqrt(kappa x/(pi V)) at a distance x behind its leading edge, and behind the band the difference of two of these
-/// (Jaeger 1942). The effect of conduction along x falls as kappa/(V x).
+/// A fast band (Jaeger 1942): T = 2 q/lambda sqrt(kappa x/(pi V)) at a distance x behind the leading edge. Behind the band T is the difference of two
+/// such terms. Conduction along x adds an effect that falls as kappa/(V x).
 #[test]
 fn behind_the_edge_of_a_fast_band_the_temperature_grows_as_the_root() {
     let (n, d, speed, q) = (64, 1e-4, 20.0, 1e8);
@@ -42,7 +43,7 @@ fn behind_the_edge_of_a_fast_band_the_temperature_grows_as_the_root() {
             let x = (k as f64 + 0.5 - 8.0) * d;
             let exact = root(x) - root(x - 32.0 * d);
             let rise = fast.rise[0][if sign > 0.0 { k } else { n - 1 - k }];
-            // kappa/(V x) is .0016 at 4.5 elements behind an edge, where the first test is.
+            // The first place that is compared lies 4.5 elements behind an edge, where kappa/(V x) is .0016.
             let near = if (38..44).contains(&k) { 2e-2 } else { 4e-3 };
             assert!((rise / exact - 1.0).abs() < near, "{k}: {rise} {exact}");
         }
@@ -50,7 +51,8 @@ fn behind_the_edge_of_a_fast_band_the_temperature_grows_as_the_root() {
     }
 }
 
-/// lambda T of a single element at its own centre, in polar coordinates: `1/(2 pi) integral of (1 - exp(-P R (1 - cos))) / (P (1 - cos))`.
+/// lambda T at the centre of a single element, in polar coordinates: `1/(2 pi) integral of (1 - exp(-P R (1 - cos))) / (P (1 - cos))` over the angle,
+/// with R the distance of the edge.
 fn own(grid: &Grid, wave: f64) -> f64 {
     let steps = 400_000;
     let of = |k: usize| {
@@ -67,7 +69,7 @@ fn own(grid: &Grid, wave: f64) -> f64 {
     (0..steps).map(of).sum::<f64>() / steps as f64
 }
 
-/// lambda T at an offset from the element, by Simpson's rule: the integrand is smooth there.
+/// lambda T at a place outside the element, by Simpson's rule: the integrand is smooth there.
 fn offset(grid: &Grid, (kx, ky): (f64, f64), wave: f64) -> f64 {
     let steps = 400;
     let part = |k: usize, d: f64| (k as f64 / steps as f64 - 0.5) * d;
@@ -97,22 +99,24 @@ fn one_element_heats_as_the_integral_of_jaegers_source() {
         let near = [(1_i64, 0_i64), (4, 0), (-1, 0), (-4, 1), (0, 1), (2, 2), (1, -3)];
         for (kx, ky) in near.into_iter().chain([(19, 0), (24, 3), (-20, 0), (20, -8), (0, 14), (-9, 13)]) {
             let exact = offset(&grid, (kx as f64, ky as f64), wave);
-            // The error of Simpson's rule on parts of 1/400 of an element; near a fast source there is a thin layer at the edge.
+            // The error of Simpson's rule with steps of 1/400 of an element. For a fast source there is a thin layer at the edge, which needs a
+            // larger tolerance.
             let allowed = if kx.abs() + ky.abs() < 13 || speed > 1.0 { 2e-5 } else { 1e-10 };
             assert!((at(kx, ky) - exact).abs() < allowed * scale, "{speed} {kx} {ky}: {} {exact}", at(kx, ky));
         }
     }
 }
 
-/// Elements far longer than wide, wider than long, and far larger than kappa/V, at their own centre: `1/(2 pi)` times the sum over edges of `d
-/// integral of (1 - exp(-z))/z dt`, `z = P (d cosh t - x)`. d is the distance of an edge and d sinh t the place along it. By Simpson's rule.
+/// Elements that are much longer than wide, much wider than long, or much larger than kappa/V. lambda T at their centres is `1/(2 pi)` times the sum
+/// over the edges of `d integral of (1 - exp(-z))/z dt`, `z = P (d cosh t - x)`: d is the distance of an edge, and d sinh t the place along it. The
+/// integrals are computed by Simpson's rule.
 #[test]
 fn long_and_large_elements_heat_as_their_edges_say() {
     for (dx, dy) in [(100.0, 1.0), (1.0, 1.0), (1.0, 100.0), (1e4, 3.0)] {
         for peclet in [1e-2, 1.0, 30.0, 1e3, 1e5] {
             let (wave, steps) = (peclet / dx, 40_000);
             let edge = |d: f64, half: f64, x: &dyn Fn(f64) -> f64| {
-                // t = s^3: behind a fast source the integrand has a narrow peak at 0.
+                // The substitution t = s^3 resolves the narrow peak that the integrand has at 0 behind a fast source.
                 let (end, step) = ((half / d).asinh().cbrt(), 2.0 / f64::from(steps));
                 let at = |k: i32| {
                     let s = end * (f64::from(k) * step - 1.0);
@@ -129,7 +133,7 @@ fn long_and_large_elements_heat_as_their_edges_say() {
             let grid = Grid::new(1, 1, dx, dy).expect("a grid");
             let found = 50.0 * found(grid, &[1.0], [wave * 2.8e-5, 0.0], Some(1.0)).largest[0];
             println!("{dx} {dy} {peclet}: {:.1e}", found / exact - 1.0);
-            // The error of the rules on panels with a ratio of four, and of the logarithm on the first one.
+            // 1e-9 is the error of the library's quadrature rules, on panels that grow by a factor of four, and of the logarithm on the first panel.
             assert!((found / exact - 1.0).abs() < 1e-9, "{dx} {dy} {peclet}: {found} {exact}");
         }
     }
@@ -143,7 +147,7 @@ fn the_heat_is_shared_so_that_both_are_as_warm() {
     assert!((both.largest[0] / both.largest[1] - 1.0).abs() < 1e-12 && both.share > 0.5 && both.share < 1.0);
     let one = found(grid, &flux, [-2.0, 0.5], Some(1.0));
     assert!((one.largest[0] * both.share / both.largest[0] - 1.0).abs() < 1e-12);
-    // Without a heat flux.
+    // Without a heat flux both bodies share equally, and there is no temperature.
     let none = found(grid, &vec![0.0; grid.len()], [1.0, 1.0], None);
     assert!(none.share == 0.5 && none.rise.iter().flatten().all(|t| *t == 0.0));
 }
@@ -181,11 +185,11 @@ fn what_is_beyond_the_range_is_refused_by_its_name() {
         let Err(Error::NotFinite(message)) = found else { panic!("{words}: {found:?}") };
         assert!(message.starts_with(words), "{message}");
     }
-    // Within the range temperatures are of the order of the flux.
+    // Temperatures within the range are of the order of the flux.
     assert!(of(1e300, 1.0, 1.0).is_ok_and(|largest| largest.iter().all(|top| *top > 1e299 && *top < 1e301)));
 }
 
-/// Without a given share the largest temperatures of both bodies are equal, if both bodies get warmer; a negative flux cools.
+/// If the share is not given, it makes the largest temperatures of both bodies equal, provided that both get warmer. A negative flux cools.
 #[test]
 fn a_flux_that_cools_too_leaves_both_as_warm() {
     let (n, d) = (12, 1e-4);
@@ -204,7 +208,8 @@ fn a_flux_that_cools_too_leaves_both_as_warm() {
 /// trapezoidal rule, to round-off.
 fn of_line(x: f64, wave: f64) -> f64 {
     let a = (wave * x.abs()).max(1e-300);
-    // The integrand has a width of 1/sqrt(1 + a), and is analytic in a strip of half-width pi/2.
+    // The integrand has a width of 1/sqrt(1 + a), and is analytic in a strip of half-width pi/2: with this step the trapezoidal rule is exact to
+    // round-off.
     let step = 0.2 / (1.0 + a).sqrt();
     let fades = if x < 0.0 { (-2.0 * a).exp() } else { 1.0 };
     let term = |k: u32| (-2.0 * a * (0.5 * step * f64::from(k)).sinh().powi(2)).exp();
@@ -212,7 +217,7 @@ fn of_line(x: f64, wave: f64) -> f64 {
     fades * step * (0.5 + (1..terms).map(term).sum::<f64>())
 }
 
-/// The integral of f from a to b by the double exponential rule. At the ends f may have a square root or a logarithm of the distance.
+/// The integral of f from a to b by the double exponential rule, which allows a square root or a logarithm of the distance at the ends.
 fn between(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let step = 1.0 / 16.0;
     let term = |k: i32| {
@@ -231,7 +236,7 @@ fn a_band_of_hertz_is_as_warm_as_its_lines() {
     let (n, a, q0) = (401, 1e-3, 1e7);
     let d = 2.4 * a / n as f64;
     let x = |k: usize| (k as f64 - 200.0) * d;
-    // The antiderivative, for means over elements.
+    // The antiderivative of the pressure, for means over elements.
     let whole = |x: f64| {
         let s = (x / a).clamp(-1.0, 1.0);
         0.5 * a * (s * (1.0 - s * s).sqrt() + s.asin())
@@ -239,7 +244,7 @@ fn a_band_of_hertz_is_as_warm_as_its_lines() {
     let flux: Vec<f64> = (0..n).map(|k| q0 * (whole(x(k) + 0.5 * d) - whole(x(k) - 0.5 * d)) / d).collect();
     for peclet in [0.05, 0.5, 5.0, 50.0, 2e3] {
         let (wave, speed) = (peclet / a, 2.0 * 1.4e-5 * peclet / a);
-        // A strip so wide that its ends have no effect in the middle: they fade as exp(-P r).
+        // The strip is so wide that its ends have no effect in the middle: it decays as exp(-P r).
         let grid = Grid::new(n, 1, d, 1.0).expect("a grid");
         let warm = found(grid, &flux, [speed, 0.0], Some(1.0));
         let exact = |at: f64| {
@@ -251,8 +256,9 @@ fn a_band_of_hertz_is_as_warm_as_its_lines() {
         let largest = warm.largest[0];
         for k in (0..n).step_by(10) {
             let (rise, exact) = (warm.rise[0][k], exact(x(k)));
-            // The error is of second order in the elements, of which a has 167. For a fast band the flux of an element differs from that at its
-            // middle: an error of (2/3) q' (d/2)^(3/2), relative to 2.19 q0 a^(1/2). Near the edges the flux has the square root of the distance.
+            // The error is of second order in the element, which is 1/167 of a. For a fast band the flux within an element differs from that in its
+            // middle, which causes an error of (2/3) q' (d/2)^(3/2), relative to 2.19 q0 a^(1/2). Near the edges the flux grows as the square root of
+            // the distance.
             let s = (x(k) / a).abs().min(1.0);
             let slope = s / (1.0 - s * s).max(8.0 * d / a).sqrt();
             let near = if (x(k).abs() - a).abs() < 4.0 * d { 5e-4 } else { 2e-5 };
@@ -260,7 +266,7 @@ fn a_band_of_hertz_is_as_warm_as_its_lines() {
             assert!((rise - exact).abs() < tolerance * largest, "{peclet} {k}: {rise} {exact} of {largest}");
         }
         if peclet > 1e3 {
-            // Blok (1937): 1.11 times the heat per length over the square root of lambda rho c V 2 a.
+            // Blok (1937): the largest temperature is 1.11 times the heat per length over the square root of lambda rho c V 2 a.
             let blok = 1.11 * (0.5 * PI * q0 * a) / (50.0 * (speed / 1.4e-5 * 2.0 * a).sqrt());
             assert!((largest / blok - 1.0).abs() < 5e-3, "{largest} {blok}");
         }

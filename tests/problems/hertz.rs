@@ -1,4 +1,4 @@
-//! The exact Hertz solution compared with printed values, and the convergence of the numerical solution to it.
+//! The library's exact Hertz solution is compared with printed values, and the numerical solution converges to it.
 
 use crate::paper as case;
 
@@ -13,7 +13,7 @@ fn close(value: f64, exact: f64, tolerance: f64) {
 #[test]
 fn the_exact_solution_of_the_papers_case_has_all_digits() {
     let compliance = Bodies::same(case::SHEAR_MODULUS, case::POISSON_RATIO).compliance();
-    // Complete elliptic integrals in double precision, computed independently.
+    // The expected values: complete elliptic integrals in double precision, computed independently.
     for exact in [
         hertz(case::CURVATURE.0, case::CURVATURE.1, case::APPROACH, compliance).unwrap(),
         hertz_by_force(case::CURVATURE.0, case::CURVATURE.1, 81986.77696838684, compliance).unwrap(),
@@ -36,7 +36,7 @@ fn a_sphere_is_johnsons_formula() {
     close(exact.semi_axis_y, 1.6134286460245437, 1e-14);
     close(exact.approach, 0.6507879989531481, 1e-14);
     close(exact.max_pressure, 1.2839257217043503, 1e-14);
-    // Nearly a sphere; nearly a cylinder, with the axes exchanged.
+    // Limits: nearly a sphere, and nearly a cylinder with the axes exchanged.
     let near = hertz(0.125, 0.125 * (1.0 + 1e-9), 0.65, 0.2).unwrap();
     close(near.force, hertz(0.125, 0.125, 0.65, 0.2).unwrap().force, 1e-8);
     let (a, b) = (hertz(1.0, 1e4, 1e-3, 1.0).unwrap(), hertz(1e4, 1.0, 1e-3, 1.0).unwrap());
@@ -75,7 +75,7 @@ fn prescribing_the_force_finds_the_approach_and_the_reverse() {
     let scene = Scene { load: Load::Force(report.measures.force), ..case::scene(m, &h) };
     let (by_force, stop, again) = solve(&scene, &tight).unwrap();
     assert_eq!(stop, Outcome::Converged);
-    // The relative residual is 1e-10. The relative errors of approach and force are a small multiple of it.
+    // The relative residual is 1e-10. The relative errors of approach and force are small multiples of it.
     close(again.measures.approach, case::APPROACH, 1e-9);
     close(again.measures.force, report.measures.force, 1e-12);
     assert_eq!(by_approach.state().contact, by_force.state().contact);

@@ -9,7 +9,7 @@ use contact_normal::solver::{solve, InitialGuess, Options, Outcome, Solver};
 
 use super::support::assert_conditions;
 
-/// Bits of the reference: cancellation at offset 16384 and aspect ratio 1000 takes about 80 of them.
+/// The precision of the reference in bits: the cancellation at offset 16384 and aspect ratio 1000 takes about 80 of them.
 const BITS: usize = 320;
 const RM: RoundingMode = RoundingMode::ToEven;
 
@@ -88,13 +88,13 @@ fn scaling_the_element_by_a_power_of_two_scales_the_bits() {
     }
 }
 
-/// A table of the half-space's coefficients is solved with the operators of the half-space. Only the tables are held in addition. They are even, with
+/// A scene with a table of the half-space's coefficients uses the same operators as the half-space. It additionally holds the tables, which are even:
 /// mx by my doubles of offsets >= 0 on each grid.
 #[test]
 fn reported_bytes_hold_the_coefficients() {
     let (mx, my) = (40, 36);
     let grid = Grid::new(mx, my, 0.5, 0.5).expect("a grid");
-    // All of it is in contact, so that both converge at their first certificate: neither keeps an iterate beside.
+    // All elements are in contact, so that both solves converge at their first certificate, and neither keeps a best iterate.
     let h: Vec<f64> = (0..grid.len()).map(|i| 1e-4 * ((i % mx) as f64 - 20.0).powi(2)).collect();
     let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.5));
     let half_space = plain.coefficients().unwrap();
@@ -109,7 +109,7 @@ fn reported_bytes_hold_the_coefficients() {
     assert_eq!(Coefficients::from(periodic).bytes(), 8 * 21 * 19);
 }
 
-/// A table of the half-space's coefficients, times a factor, in which offsets `(kx, .)` and `(-kx, .)` differ by a part `skew`.
+/// A table of the half-space's coefficients times a factor. Offsets `(kx, .)` and `(-kx, .)` differ by a part `skew`.
 fn own_table(grid: &Grid, factor: f64, skew: f64) -> Vec<f64> {
     let (mx, my) = (grid.mx as i64, grid.my as i64);
     let half_space = HalfSpace::new(grid.dx, grid.dy, 1.0 / factor);
@@ -117,15 +117,15 @@ fn own_table(grid: &Grid, factor: f64, skew: f64) -> Vec<f64> {
     offsets.map(|(kx, ky)| (1.0 + skew * kx.signum() as f64) * half_space.at(kx, ky)).collect()
 }
 
-/// Solves without a guess, on a window of the grid and in both precisions, have the same bits. With a skew below 1e-7 the table is symmetric for the
-/// solver, but its symbol has another period.
+/// A handle that gets another table has the bits of a new handle, for solves without a guess, on a window of the grid, and in both precisions. With a
+/// skew below 1e-7 the table counts as symmetric, but its symbol has another period.
 #[test]
 fn a_solver_with_another_table_solves_as_a_new_one_from_nothing_and_from_its_last_result() {
     let grid = Grid::new(90, 72, 0.5, 0.6).expect("a grid");
     let place = |i: usize| ((i % 90) as f64 - 44.0, (i / 90) as f64 - 36.0);
     let h: Vec<f64> = (0..grid.len()).map(place).map(|(x, y)| 1e-3 * (x * x + y * y)).collect();
     let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.2));
-    // On a window of another size.
+    // A smaller load has a window of another size.
     let less = Scene { load: Load::Approach(0.1), ..plain.clone() };
     let with = |values: &[f64]| Scene { influence: Some(Table::new(90, 72, values, &grid).unwrap()), ..plain.clone() };
     for precision in [Precision::Mixed, Precision::Double] {
@@ -158,7 +158,8 @@ fn a_solver_with_another_table_solves_as_a_new_one_from_nothing_and_from_its_las
     }
 }
 
-/// Symmetry is relative to the largest coefficient within the grid, not to that of the table or of an element on itself.
+/// A table counts as symmetric relative to its largest coefficient within the grid, not to the largest of the whole table or to that of an element on
+/// itself.
 #[test]
 fn symmetry_is_judged_beside_the_largest_coefficient_of_the_grid() {
     let (grid, part) = (Grid::new(9, 6, 1.0, 1.0).unwrap(), Grid::new(4, 6, 1.0, 1.0).unwrap());
@@ -178,7 +179,7 @@ fn symmetry_is_judged_beside_the_largest_coefficient_of_the_grid() {
     }
 }
 
-/// The first in the order of the table is named, whether it is even or not.
+/// The message names the first bad coefficient in the order of the table, whether the table is even or not.
 #[test]
 fn a_coefficient_that_is_not_finite_is_named() {
     let grid = Grid::new(5, 4, 1.0, 1.0).unwrap();
@@ -192,15 +193,15 @@ fn a_coefficient_that_is_not_finite_is_named() {
             let mut values = vec![1.0; 10 * 8];
             bad.iter().for_each(|(kx, ky)| values[place(*kx, *ky)] = value);
             let error = Table::scaled(5, 4, &values, 1e10, &grid).unwrap_err().to_string();
-            // Only a quarter of an even table is tested.
+            // Of an even table only a quarter is tested, so that another one is the first.
             let first = if bad.len() == 4 && !value.is_nan() { "(2, 3)" } else { first };
             assert!(error.contains(first) && error.contains("finite"), "{error}, not {first}");
         }
     }
 }
 
-/// Coefficients of small grids are kept, others are computed. Both have the same bits. On a grid of elements twice as large the coefficients are
-/// twice as large.
+/// The library stores coefficients of small grids and computes others when needed. Both have the same bits. Elements that are twice as large have
+/// coefficients that are twice as large.
 #[test]
 fn coefficients_that_are_kept_are_those_that_are_computed() {
     for (dx, dy) in [(1.0, 1.0), (0.3, 0.7), (2.0, 0.01)] {

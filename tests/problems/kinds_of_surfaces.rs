@@ -1,12 +1,13 @@
-//! Two hundred random surfaces like measured ones: without change, with one high point, with fifteen, worn to a plateau. A third of them have holes,
-//! a fifth quantised heights, a seventh a tilt. AUTO by force and by approach. The limits are those of a prototype on forty such scenes.
+//! Two hundred random surfaces that resemble measured ones: unchanged, with one high point, with fifteen high points, or worn to a plateau. A third
+//! of them have holes, a fifth quantised heights, a seventh a tilt. AUTO solves them by force and by approach. The limits of iterations are those of
+//! a prototype on forty such scenes.
 
 use crate::measured_surfaces::{iterations, rough};
 use crate::random::Random;
 
-/// The number of elements of a side: for most surfaces, and for the last ten.
+/// The number of elements along a side, for most surfaces and for the last ten.
 const SIDES: [usize; 2] = [48, 150];
-/// The iterations of the prototype: medians of 16 by force and 16.5 by approach, and at most 21 and 23.
+/// The iterations of the prototype, by force and by approach: medians of 16 and 16.5, and at most 21 and 23.
 const MEDIAN: [u64; 2] = [16, 16];
 const MOST: [u64; 2] = [21, 23];
 

@@ -1,4 +1,4 @@
-//! Kinks of the surface within the contact: largest pressures grow as the logarithm of the number of elements, and have no error.
+//! Kinks of the surface within the contact. There the largest pressure grows as the logarithm of the number of elements, and its error is unknown.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Period, Scene};
@@ -17,7 +17,7 @@ fn bent(mx: usize, my: usize, slope: f64) -> (Grid, Vec<f64>) {
     (grid, (0..grid.len()).map(of).collect())
 }
 
-/// Whether the largest pressure has an error, and its value.
+/// Whether the error of the largest pressure is known, and the pressure.
 fn largest((grid, h): &(Grid, Vec<f64>), is_line: bool) -> (bool, f64) {
     let bodies = Bodies::same(1.0, 0.3);
     let period = is_line.then_some(Period { x: true, y: true });
@@ -27,11 +27,12 @@ fn largest((grid, h): &(Grid, Vec<f64>), is_line: bool) -> (bool, f64) {
     (report.error.max_pressure.is_some(), report.measures.max_pressure)
 }
 
-/// The peak at the kink adds to the pressure of the parabola, which elements resolve. The error of the parabola must not be taken for that of the
-/// peak.
+/// The peak at the kink adds to the pressure of the parabola, which the elements resolve. The library must not report the error of the parabola's
+/// pressure as that of the peak.
 #[test]
 fn the_largest_pressure_at_a_kink_has_no_error() {
-    // On coarse grids four doublings of a weak kink add less than the error of the parabola, so that grids are finer.
+    // On coarse grids, four doublings of the elements change the peak of a weak kink by less than the error of the parabola, so that this kink needs
+    // finer grids.
     for (slope, coarsest) in [(0.005, 64), (0.02, 32)] {
         for m in [coarsest, 2 * coarsest] {
             let (is_known, pressure) = largest(&bent(m, m, slope), false);
@@ -42,13 +43,13 @@ fn the_largest_pressure_at_a_kink_has_no_error() {
             assert!(!is_known, "{slope} on {m}: {pressure}");
         }
     }
-    // The peak grows by E* s ln 2/(2 pi) for each doubling.
+    // The peak at a kink grows by E* s ln 2/(2 pi) for each doubling of the elements, s the jump of the slope (here 2 times 0.02).
     let [coarse, fine] = [64, 4096].map(|m| largest(&bent(m, 1, 0.02), true).1);
     let modulus = 1.0 / (1.0 - 0.3);
     let expected = 6.0 * modulus * 0.04 * 2.0_f64.ln() / (2.0 * std::f64::consts::PI);
-    // The kink has any place within its element.
+    // 30 %: the kink may lie anywhere within its element.
     assert!(((fine - coarse) / expected - 1.0).abs() < 0.3, "{coarse} {fine}: {expected}");
-    // Without a kink, and with a concave one, which carries no pressure.
+    // The error is known without a kink, and with a concave kink, which carries no pressure.
     for slope in [0.0, -0.03] {
         for m in [64, 128] {
             assert!(largest(&bent(m, m, slope), false).0, "{slope} on {m} x {m}");
@@ -56,7 +57,7 @@ fn the_largest_pressure_at_a_kink_has_no_error() {
     }
 }
 
-/// A search for the largest pressure does not end as converged, because it has no error.
+/// A search for the largest pressure does not end as converged here, because the error is unknown.
 #[test]
 fn a_search_at_a_kink_does_not_say_that_it_is_done() {
     let (grid, h) = bent(32, 32, 0.02);

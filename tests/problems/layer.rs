@@ -1,5 +1,5 @@
-//! Effect `layer`: Winkler's foundation if it is soft, no effect if it is rigid, equal compliances per element as a uniform one, and a number of
-//! products that does not grow.
+//! Effect `layer`. A soft layer is Winkler's foundation, a rigid one has no effect, and equal compliances of all elements act as a uniform one. A
+//! layer does not increase the number of products by much.
 
 use super::dense;
 use crate::support::run;
@@ -35,7 +35,7 @@ fn a_soft_layer_is_winklers_foundation() {
     let grid = Grid::new(40, 30, 0.05, 0.05).unwrap();
     let h = ellipse(&grid);
     let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.2));
-    // A p is at most p times the sum of all coefficients, below 1200 self-influences, so that p = (approach - h)/c to 1200/1e9.
+    // A p is at most p times the sum of all coefficients, which is below 1200 self-influences. So p = (approach - h)/c holds to 1200/1e9.
     let c = 1e9 * self_influence(&plain);
     let winkler: Vec<f64> = h.iter().map(|h| f64::max(0.2 - h, 0.0) / c).collect();
     for method in [Method::Auto, Method::Norm, Method::Multigrid, Method::FullMultigrid] {
@@ -61,14 +61,15 @@ fn a_rigid_layer_is_none_and_a_stiff_one_hardly_any() {
         let (rigid, _) = run(&Scene { layer: Some(layer), ..plain.clone() }, &tight(Method::Auto));
         assert_eq!((&rigid.state().p, &rigid.state().u), (&without.state().p, &without.state().u));
     }
-    // The smallest eigenvalue of A is about 0.3 of the self-influence, so that pressures change by at most about c/0.3 of it.
+    // The smallest eigenvalue of A is about 0.3 of the self-influence, so that pressures change by at most about c/0.3, c in units of the
+    // self-influence: 3e-6.
     let c = 1e-6 * self_influence(&plain);
     let (stiff, _) = run(&Scene { layer: Some(Layer(Each::Uniform(c))), ..plain }, &tight(Method::Auto));
     assert_near(stiff.state(), &without.state().p, 1e-5, "stiff");
     assert!(stiff.state().p != without.state().p);
 }
 
-/// One compliance per element: soft in the middle, rigid at the rim of the contact, and rough.
+/// Compliances per element: soft in the middle, rigid at the rim of the contact, and rough.
 fn uneven(grid: &Grid, scale: f64) -> Vec<f64> {
     let middle = |i: usize| {
         let (x, y) = ((i % grid.mx) as f64 / grid.mx as f64 - 0.5, (i / grid.mx) as f64 / grid.my as f64 - 0.5);
@@ -95,7 +96,8 @@ fn one_compliance_per_element_satisfies_the_equations_of_the_direct_sum() {
                 let size = u.iter().copied().fold(0.0, f64::max);
                 for i in 0..grid.len() {
                     let e = h[i] - report.measures.approach + u[i] + c[i] * state.p[i];
-                    // The tolerance over some 800 elements, one of which may have all of the residual; outside C, FFT round-off.
+                    // The residual is an rms over some 800 elements, of which one may have all of it: a factor of 30. Outside C the round-off of FFT
+                    // products counts.
                     let allowed = 1e-10 * size * 30.0;
                     let holds = if state.contact[i] { e.abs() <= allowed } else { e >= -allowed && state.p[i] == 0.0 };
                     assert!(holds && state.p[i] >= 0.0, "{scale} {period:?} {load:?}, element {i}: e = {e}");
@@ -116,7 +118,7 @@ fn one_compliance_everywhere_is_the_uniform_layer() {
     let (uniform, _) = run(&Scene { layer: Some(Layer(Each::Uniform(c))), ..plain.clone() }, &tight(Method::Auto));
     let scene = Scene { layer: Some(Layer(Each::PerElement(&each))), ..plain };
     for method in [Method::Auto, Method::Norm] {
-        // A relative residual of 1e-10, and a condition number below 100 with this layer.
+        // The relative residual is 1e-10, and with this layer the condition number is below 100.
         assert_near(run(&scene, &tight(method)).0.state(), &uniform.state().p, 1e-8, &format!("{method:?}"));
     }
 }
@@ -139,7 +141,7 @@ fn the_count_of_products_does_not_grow() {
             let smooth = products(Some(Layer(Each::PerElement(&smooth))));
             assert!(smooth <= without + 2, "{relative}, smooth: {smooth} products, without a layer {without}");
             assert!(uniform <= without + 2, "{relative}: {uniform} products, without a layer {without}");
-            // Compliances over three decades, and 0 at the rim: 7 to 17 products, without a layer 8.
+            // Measured with compliances over three decades, and 0 at the rim: 7 to 17 products, compared with 8 without a layer.
             assert!(each <= 2 * without + 1, "{relative}, per element: {each} products, without a layer {without}");
         }
     }

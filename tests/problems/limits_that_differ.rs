@@ -1,5 +1,5 @@
-//! Pressure limits that differ between elements by up to a factor of a thousand, with two periods: flat lines, gratings, rough squares. Most elements are at
-//! their limit, and the elements at their limit change until late. The certificates are computed by direct sums.
+//! Pressure limits that differ between elements by up to a factor of a thousand, in scenes with two periods: flat lines, gratings, rough squares.
+//! Most elements are at their limit, and the set of these elements changes until late in a solve. The certificates are recomputed by direct sums.
 
 use crate::periodic_by_approach::{displacements, rough};
 use crate::random::Random;
@@ -7,10 +7,10 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Each, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Outcome, Solver};
 
-/// The tolerance of 1e-6, and round-off of two products.
+/// The tolerance of 1e-6, and 1 % of it for the different round-off of direct sums and FFT products.
 const TOLERANCE: f64 = 1.01e-6;
 
-/// The conditions within limits: e = 0 between the bounds, e >= 0 where p = 0, e <= 0 where p is at its limit.
+/// Asserts the contact conditions with limits: e = 0 between the bounds, e >= 0 where p = 0, e <= 0 where p is at its limit.
 pub fn assert_conditions(solver: &Solver, scene: &Scene<'_>, limits: &[f64], what: &str) {
     let (state, h) = (solver.state(), scene.undeformed_distance);
     let u = displacements(scene, &state.p);
@@ -34,15 +34,15 @@ pub fn assert_conditions(solver: &Solver, scene: &Scene<'_>, limits: &[f64], wha
         }
     }
     assert!(counts.1 > 0.01 * h.len() as f64, "{what}: hardly any contact");
-    // If the whole surface is flat and free, h - approach is round-off of sums over all elements.
+    // If the whole surface is flat and no element is at its limit, h - approach is as small as the round-off of sums over all elements.
     let noise =
         f64::EPSILON * state.p.iter().sum::<f64>() * scene.coefficients().unwrap().at(0, 0) * f64::sqrt(counts.0);
     assert!(f64::sqrt(residual) <= TOLERANCE * f64::sqrt(distance) + noise, "{what}: {residual:e} of {distance:e}");
     assert!(violation <= TOLERANCE * f64::sqrt(touching / counts.1), "{what}: violation {violation}");
 }
 
-/// Solves a scene with random limits of `size` to `spread` times that, and checks the result. A force is given as a part of the sum of the limits.
-/// Returns the number of cycles.
+/// Solves a scene with random limits from `size` to `size` times `spread`, and checks the result. A force is given as a part of the sum of the
+/// limits. Returns the number of cycles.
 fn check(grid: Grid, h: &[f64], (size, spread): (f64, f64), load: Load, random: &mut Random) -> u64 {
     let limits: Vec<f64> = h.iter().map(|_| size * random.decades(1.0, spread)).collect();
     let load = match load {
@@ -64,7 +64,7 @@ fn check(grid: Grid, h: &[f64], (size, spread): (f64, f64), load: Load, random: 
     report.count.cycles
 }
 
-/// Without the projected Newton method many of such lines end early.
+/// Without the projected Newton method many of these solves would end early.
 #[test]
 fn lines_with_limits_that_differ_are_solved() {
     let random = &mut Random::new(3);
@@ -83,7 +83,7 @@ fn lines_with_limits_that_differ_are_solved() {
         let spread = random.decades(1.0, 1e3);
         most = most.max(check(grid, &h, (size, spread), load, random));
     }
-    // The default limit is 1000 cycles.
+    // The bound leaves a margin below the default limit of 1000 cycles.
     assert!(most <= 800, "{most} cycles");
 }
 
@@ -108,8 +108,8 @@ fn rough_squares_with_limits_that_differ_are_solved() {
     }
 }
 
-/// Full contact with a few elements at their limit. The mean of p has no displacement, so only the elements at their limit determine it. Scenes by force
-/// and by approach find it.
+/// Full contact with a few elements at their limit. The mean of p causes no displacement, so that only the elements at their limit determine it. It
+/// is found by force and by approach.
 #[test]
 fn the_mean_is_found_where_a_few_elements_are_at_their_limit() {
     let random = &mut Random::new(7);
@@ -123,7 +123,7 @@ fn the_mean_is_found_where_a_few_elements_are_at_their_limit() {
         let mut pressures = solve(&free, &Options::default()).unwrap().0.state().p.clone();
         assert!(pressures.iter().all(|p| *p > 0.0), "full contact");
         pressures.sort_by(f64::total_cmp);
-        // Below the `few` largest pressures.
+        // The limit lies just below the `few` largest pressures.
         let last = pressures.len() - few;
         let limit = 0.5 * (pressures[last] + pressures[last - 1]);
         let limits = vec![limit; m * m];

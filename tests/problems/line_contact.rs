@@ -1,4 +1,4 @@
-//! Line contacts, on one row or one column of elements: own coefficients cost no more cycles than the half-space's.
+//! Line contacts, on one row or one column of elements. A caller's coefficients take no more cycles than the half-space's.
 
 use std::f64::consts::PI;
 
@@ -39,7 +39,7 @@ fn own_coefficients_on_one_row_or_column_keep_the_preconditioner() {
                 let scene = Scene { influence: Some(table(&grid, &bodies, factor)), ..plain.clone() };
                 let (solver, stop, own) = solve(&scene, &Options::default()).unwrap();
                 assert_eq!(stop, Outcome::Converged, "{mx} x {my} {load:?}");
-                // The circulants differ only in the coefficients beyond the grid.
+                // The circulants differ only in the coefficients beyond the grid, which allows for 4 more cycles.
                 let allowed = report.count.cycles + 4;
                 assert!(
                     own.count.cycles <= allowed,
@@ -69,14 +69,15 @@ fn the_circulant_of_one_row_is_one_row_long() {
         let coefficients = table(&grid, &Bodies::same(1.0, 0.3), |_| 1.0).into();
         let (px, py) = Operator::<f64>::circulant_period(&coefficients, &grid);
         assert!((mx > 1 || px == 1) && (my > 1 || py == 1), "{mx} x {my}: period {px} x {py}");
-        // The inverse maps a uniform pressure of 1 on a whole period to one over the sum of the circulant's coefficients.
+        // The inverse of a positive circulant exists: it maps a uniform u of 1 over a whole period to a pressure of one over the sum of the
+        // circulant's coefficients.
         let inverse = Operator::<f64>::inverse_circulant(&coefficients, &grid, (px, py), &Threads::One).unwrap();
         assert!(inverse.is_some(), "{mx} x {my}: not positive");
     }
 }
 
-/// A roller on one row of long elements: the largest shear stress of a line contact is .300 p0 at a depth of .786 a, and the largest von Mises stress
-/// in plane strain, nu = .3, .558 p0 at .70 a (Johnson, Contact Mechanics, section 4.2).
+/// A roller on one row of long elements. In a line contact the largest shear stress is .300 p0 at a depth of .786 a. In plane strain with nu = .3 the
+/// largest von Mises stress is .558 p0 at .70 a (Johnson, Contact Mechanics, section 4.2).
 #[test]
 fn largest_stresses_of_a_roller_lie_below_its_surface() {
     let (load, radius, bodies) = (500.0, 50.0, Bodies::same(82_000.0, 0.3));
@@ -93,7 +94,8 @@ fn largest_stresses_of_a_roller_lie_below_its_surface() {
             let (_, rows) = quantities(&scene, &Options::default(), &wanted, 2, None).unwrap();
             let found: Vec<f64> = rows[6..].iter().map(|row| row.value.expect("a value")).collect();
             println!("{mx} {long} {found:?} {a} {p0}");
-            // The effect of the ends is a over the length. The contact has 21 elements across. The exact depth has two digits.
+            // The ends of the roller change stresses by a over its length. The contact has 21 elements across, which allows for 2e-3. The exact depth
+            // is known to two digits.
             let ends = a / long;
             for (value, exact, allowed) in
                 [(found[0], 0.558 * p0, 2e-3), (found[1], 0.70 * a, 0.03), (found[2], 0.3003 * p0, 2e-3)]
@@ -104,7 +106,8 @@ fn largest_stresses_of_a_roller_lie_below_its_surface() {
     }
 }
 
-/// A line with two periods is uniform along itself: its largest stresses do not depend on the length of its elements. A grid of such elements has none.
+/// A line with two periods is uniform along itself, so that its largest stresses do not depend on the length of its elements. On a grid with several
+/// such elements along the line the stresses are not available.
 #[test]
 fn largest_stresses_of_a_line_with_two_periods_do_not_depend_on_its_length() {
     let of = |mx: usize, my: usize, long: f64| {
@@ -117,7 +120,7 @@ fn largest_stresses_of_a_line_with_two_periods_do_not_depend_on_its_length() {
     };
     let short = of(64, 1, 0.05).value.unwrap();
     for long in [1.0, 10.0, 100.0] {
-        // To the tolerance of the solve.
+        // 1e-5 allows for the tolerance of the solve.
         assert!((of(64, 1, long).value.unwrap() / short - 1.0).abs() < 1e-5, "{long}");
     }
     assert_eq!((of(64, 4, 10.0).value, of(64, 4, 10.0).lack), (None, Some(Lack::Effect)));

@@ -1,11 +1,12 @@
-//! Line scans in plane strain: pieces of the contact area move as flat punches. With two periods, by approach, the force for the approach is found.
+//! Line scans in plane strain. A piece of the contact area that moves as a flat punch converges slowly. With two periods and a given approach, the
+//! library finds the force that belongs to the approach.
 
 use crate::measured_surfaces::{auto, bodies, rough};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Load, Period, Scene};
 use contact_normal::solver::{Options, Outcome, Solver};
 
-/// The solves take 14 to 50 iterations by force and 15 to 40 by approach; with two periods by approach 43 to 80.
+/// Measured: 14 to 50 iterations by force and 15 to 40 by approach; with two periods by approach 43 to 80.
 #[test]
 fn line_scans_with_periods_end() {
     let m = 9600;
@@ -28,7 +29,7 @@ fn line_scans_with_periods_end() {
     }
 }
 
-/// With two periods contact becomes full at a finite force, and the mean gap tends to 0 with the approach.
+/// With two periods contact becomes full at a finite force, and the mean gap tends to 0 as the approach tends to the mean of h.
 #[test]
 fn lines_near_full_contact_end() {
     let m = 4000;
@@ -47,13 +48,14 @@ fn lines_near_full_contact_end() {
             let (stop, report) = solver.solve(&scene, &options, None, None).unwrap();
             assert_eq!(stop, Outcome::Converged, "{what}");
             let cycles = report.count.cycles;
-            // Near full contact the number depends on the last bits of the coefficients: on 126 such lines it is 62 in the mean, and 114 at most.
+            // Near full contact the number of iterations depends on the last bits of the coefficients: on 126 such lines it is 62 in the mean, and
+            // 114 at most.
             assert!(cycles <= 120, "{what}: {cycles} iterations");
         }
     }
 }
 
-/// Lines along y, and lines with long elements without a period, are also in plane strain: A falls as a logarithm.
+/// Lines along y, and lines with long elements without a period, are in plane strain, too: A falls only as a logarithm of the distance.
 #[test]
 fn lines_of_long_elements_end() {
     let m = 4096;

@@ -1,4 +1,5 @@
-//! Products with given pressures, and the stiffness of a result: compared with the test's own dense coefficients, and with differences of two solves.
+//! Products A p with given pressures, compared with the test's own dense matrix, and the stiffness dF/dapproach of a result, compared with
+//! elimination and with differences of two solves.
 
 use std::f64::consts::PI;
 
@@ -20,7 +21,7 @@ fn love(x: f64, y: f64, dx: f64, dy: f64) -> f64 {
     corner(r, t) - corner(l, t) - corner(r, b) + corner(l, b)
 }
 
-/// A of two half-spaces, `[i][j]`.
+/// The matrix A of two half-spaces, as `[i][j]`.
 fn half_space(grid: &Grid, bodies: &Bodies) -> Vec<Vec<f64>> {
     let part = |k: usize| (1.0 - bodies.poisson_ratio[k]) / (2.0 * PI * bodies.shear_modulus[k]);
     let c = part(0) + part(1);
@@ -107,11 +108,11 @@ fn a_product_is_that_of_the_dense_matrix_and_leaves_the_result_alone() {
         solver.product(&p, &mut u).expect("a product");
         let largest = u.iter().fold(0.0f64, |largest, u| largest.max(u.abs()));
         for (i, expected) in times(matrix, &p).into_iter().enumerate() {
-            // The closed form is a difference of logarithms: an error of 1e-12 at these offsets.
+            // The closed form of the test is a difference of logarithms, with an error of 1e-12 at these offsets.
             assert!((u[i] - expected).abs() <= 1e-11 * largest, "{what}: {} for {expected}", u[i]);
         }
         assert_eq!(solver.state().p, before, "{what}");
-        // The next solve counts its own products only, and has the same bits.
+        // The next solve does not count the product, and has the same bits as without it.
         let again = |solver: &mut Solver| solver.solve(scene, &Options::default(), None, None).expect("a result").1;
         let with = again(&mut solver);
         let (mut other, _) = run(scene, &Options::default());
@@ -141,7 +142,8 @@ fn what_is_no_pressure_is_refused() {
     assert!(u.iter().all(|u| *u == 1.0));
 }
 
-/// With two periods and a coating a given force is solved without the compression by the mean pressure; a product includes it.
+/// With two periods and a coating the library solves for a given force without the compression by the mean pressure. A product A p includes the
+/// compression, whatever the load is.
 #[test]
 fn a_product_has_the_compression_whatever_the_load_is() {
     let grid = Grid::new(16, 16, 0.5, 0.5).expect("a grid");
@@ -156,7 +158,7 @@ fn a_product_has_the_compression_whatever_the_load_is() {
         solver.product(&[1.0; 256], &mut u).expect("a product");
         u
     });
-    // A uniform pressure compresses the layer by p t/M.
+    // A uniform pressure p compresses a layer of thickness t by p t/M, M the oedometric modulus.
     let modulus = 2.0 * layer.shear_modulus * (1.0 - layer.poisson_ratio) / (1.0 - 2.0 * layer.poisson_ratio);
     for u in products.iter().flatten() {
         assert_near(*u, layer.thickness / modulus, 1e-9, "compression");
@@ -232,7 +234,7 @@ fn the_stiffness_is_the_difference_of_two_solves() {
         let found = solver.stiffness().expect("a stiffness").1;
         let [(before, less), (after, more)] = [0.4 - step, 0.4 + step].map(at);
         assert_eq!(before, after, "{what}: the contact area stays");
-        // Forces have an accuracy of 1e-12, and their difference is 1e-6 of them.
+        // The two forces have an accuracy of 1e-12, and differ by 1e-6 of their size: 1e-5 is ample.
         assert_near(found.value, (more - less) / (2.0 * step), 1e-5, what);
     }
 }
@@ -251,7 +253,7 @@ fn without_contact_or_a_result_there_is_no_stiffness() {
     assert!(matches!(solver.stiffness(), Err(Error::Infeasible(_))));
 }
 
-/// On a fixed area all elements move, also those in tension. Units have no effect.
+/// On a fixed contact area all its elements follow the approach, also those in tension. Units have no effect on the stiffness.
 #[test]
 fn a_fixed_area_and_any_units_have_the_same_stiffness() {
     let grid = grid();

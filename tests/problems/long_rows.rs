@@ -8,7 +8,7 @@ use contact_normal::threads::Threads;
 use super::dense;
 use crate::families::case::Random;
 
-/// A table that is not symmetric, falling off as 1/k.
+/// An unsymmetric table whose coefficients fall as 1/k.
 fn influence(grid: &Grid) -> Coefficients {
     let (mx, my) = (grid.mx as i64, grid.my as i64);
     let at = |kx: i64, ky: i64| (if kx > 0 { 1.0 } else { 0.9 }) / ((kx * kx + 9 * ky * ky) as f64 + 0.04).sqrt();
@@ -22,7 +22,7 @@ fn sweeps_of_long_rows_are_those_of_the_formula() {
     for (mx, my) in [(4097, 1), (6001, 1), (9000, 1), (4500, 2)] {
         let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
         let influence = influence(&grid);
-        // Contact everywhere, on half of the elements, and on a piece inside the grid.
+        // Contact areas: all elements, a random half of them, and a piece inside the grid.
         for (fill, piece) in [(1.0, 0..grid.len()), (0.5, 0..grid.len()), (0.9, 700..grid.len() - 1234)] {
             let contact: Vec<bool> = (0..grid.len()).map(|i| random.next() < fill && piece.contains(&i)).collect();
             let b: Vec<f64> = (0..grid.len()).map(|_| random.next() - 0.4).collect();

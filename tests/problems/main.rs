@@ -1,6 +1,6 @@
 //! Results of the library: every number is compared with a closed form, a direct sum or a recomputed certificate.
 
-// Cases that the examples and benchmarks have too.
+// These cases are shared with the examples and benchmarks.
 #[path = "../../examples/accuracy/judge.rs"]
 #[allow(dead_code)]
 mod judge;

@@ -1,5 +1,5 @@
-//! Meaningless input is refused by every call that takes it: grids made without their check, tolerances and targets of 1 and more. Callbacks get numbers,
-//! never NaN.
+//! Meaningless input is refused by every call that takes it: invalid grids that were made without `Grid::new`, and tolerances and targets of 1 and
+//! more. Callbacks get numbers, never NaN.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -98,7 +98,7 @@ fn tolerances_and_targets_lie_below_1() {
     names(solve_to_accuracy(&scene, &Options::default(), &high, None, None).map(drop), "max_pressure_target is 1");
     let high = Accuracy::new(0.1).with(Quantity::ContactArea, 5.0);
     names(solve_to_accuracy(&scene, &Options::default(), &high, None, None).map(drop), "contact_area_target is 5");
-    // The largest valid tolerance.
+    // The largest valid tolerance, just below 1, is accepted.
     assert!(solve(&scene, &Options { tolerance: 1.0f64.next_down(), ..Options::default() }).is_ok());
 }
 
@@ -111,7 +111,7 @@ fn sweeps_that_overflow_are_refused() {
     names(options.check(), "both 0");
 }
 
-/// If h equals the approach on all of C, the scale of residuals is 0.
+/// If h equals the approach on all of C, residuals are relative to 0. The callback must still get numbers.
 #[test]
 fn a_callback_is_told_numbers() {
     let grid = Grid::new(9, 7, 1.0, 1.0).unwrap();

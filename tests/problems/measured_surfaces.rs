@@ -1,5 +1,5 @@
-//! Surfaces like measured ones: planes with a spike, line scans, light scattered contact, near full contact, all elements at their limit. AUTO takes
-//! about as many iterations as on a smooth surface. Certificates are computed with the test's own product.
+//! Surfaces that resemble measured ones: planes with a spike, line scans, light scattered contact, nearly full contact, all elements at their limit.
+//! AUTO takes about as many iterations as on a smooth surface. The certificates are recomputed with the test's own product.
 
 use crate::periodic_by_approach;
 use crate::random::Random;
@@ -17,8 +17,8 @@ pub fn bodies() -> Bodies {
     Bodies { shear_modulus: [0.5, f64::INFINITY], poisson_ratio: [0.0; 2] }
 }
 
-/// Cosines of random directions and phases, with amplitudes that fall as the wave number to -(1 + `hurst`), down to two elements. The rms is 1, and
-/// the highest point is at 0.
+/// A sum of cosines of random directions and phases, with wavelengths down to two elements, and amplitudes that fall as the wave number to the power
+/// -(1 + `hurst`). The rms is 1, and the highest point is at 0.
 pub fn rough(mx: usize, my: usize, hurst: f64, seed: u64) -> Vec<f64> {
     let mut random = Random::new(seed);
     let waves: Vec<_> = (0..120)
@@ -45,7 +45,7 @@ pub fn auto(scene: &Scene<'_>, what: &str) -> (Solver, Report) {
     (solver, report)
 }
 
-/// Asserts the conditions to the default tolerance, with the test's own product. Elements of C without pressure count in the residual.
+/// Asserts the contact conditions to the default tolerance, with the test's own product. The residual includes elements of C whose pressure is 0.
 fn assert_conditions_of(state: &State, h: &[f64], what: &str) {
     let u = white_noise::displacements(state.grid.mx, &state.p);
     let (mut residual, mut distance, mut penetration, mut count) = (0.0, 0.0, 0.0, 0.0);
@@ -60,12 +60,12 @@ fn assert_conditions_of(state: &State, h: &[f64], what: &str) {
             penetration = f64::max(penetration, -e);
         }
     }
-    // The tolerance of 1e-6, and round-off of two products of displacements that are up to 1e4 times the roughness.
+    // The tolerance of 1e-6, and 1 % of it for the round-off of two products, whose displacements are up to 1e4 times the roughness.
     assert!(residual.sqrt() <= 1.01e-6 * distance.sqrt(), "{what}: residual {}", (residual / distance).sqrt());
     assert!(penetration <= 1.01e-6 * (distance / count).sqrt(), "{what}: penetration {penetration}");
 }
 
-/// The iterations of certified solves, by a force and by the approach that it leads to.
+/// The numbers of iterations of certified solves: by a force, and by the approach that belongs to it.
 pub fn iterations(m: usize, h: &[f64], force: f64, what: &str) -> [u64; 2] {
     let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
     let (solver, by_force) = auto(&Scene::new(grid, h, bodies(), Load::Force(force)), what);
@@ -79,8 +79,8 @@ pub fn iterations(m: usize, h: &[f64], force: f64, what: &str) -> [u64; 2] {
     [by_force.count.cycles, by_approach.count.cycles]
 }
 
-/// 8 to 12 iterations by force and 9 to 17 by approach, without a spike and with spikes of up to 10000 rms. Directions must not carry force after
-/// clipped steps.
+/// Measured: 8 to 12 iterations by force and 9 to 17 by approach, without a spike and with spikes of up to 10000 rms. After clipped steps the library
+/// must not reuse search directions that carry a force.
 #[test]
 fn a_spike_costs_few_iterations() {
     let m = 112;
@@ -99,8 +99,8 @@ fn a_spike_costs_few_iterations() {
     }
 }
 
-/// By approach only the high points touch on the coarse grids, so that C is found on the finest grid: 11 to 20 iterations by force, and 9 to 29 by
-/// approach.
+/// With a given approach only the high points touch on the coarse grids, so that C is found on the finest grid. Measured: 11 to 20 iterations by
+/// force, and 9 to 29 by approach.
 #[test]
 fn high_points_that_hide_the_others_cost_few_iterations() {
     let m = 80;
@@ -124,9 +124,9 @@ fn high_points_that_hide_the_others_cost_few_iterations() {
     }
 }
 
-/// The surfaces of above, with a limit that the spike does not reach.
+/// The same kind of surface with a pressure limit that the spike does not reach.
 #[test]
-fn a_limit_that_is_not_reached_changes_nothing_of_that() {
+fn a_limit_that_is_not_reached_costs_few_iterations() {
     let m = 96;
     let mut h: Vec<f64> = rough(m, m, 0.3, 3).iter().map(|z| z + 2000.0).collect();
     h[20 * m + 30] = 0.0;
@@ -140,7 +140,7 @@ fn a_limit_that_is_not_reached_changes_nothing_of_that() {
     }
 }
 
-/// Elements outside the window enter at a residual of 1e-2, so that the iteration does not start again at a small one.
+/// Elements outside the window enter the contact when the residual is still 1e-2, so that the iteration need not start again from a small residual.
 #[test]
 fn light_contact_does_not_begin_anew() {
     let m = 256;
@@ -167,7 +167,7 @@ fn light_contact_does_not_begin_anew() {
     }
 }
 
-/// With two periods the mean of p has no displacement. Certified by direct sums.
+/// With two periods the mean of p causes no displacement. The results are certified by direct sums.
 #[test]
 fn approaches_near_full_contact_are_solved() {
     for m in [25, 50, 64] {
@@ -189,7 +189,8 @@ fn approaches_near_full_contact_are_solved() {
     }
 }
 
-/// p is the mean pressure, without displacements. The rest of h - approach is round-off, relative to which no residual is small.
+/// Two flat surfaces: p is the mean pressure, and there are no displacements. What remains of h - approach is round-off, relative to which no
+/// residual is small.
 #[test]
 fn flat_on_flat_with_two_periods_ends() {
     let grids = [(13, 1), (22, 33), (25, 25), (60, 60), (100, 100), (120, 90), (311, 3), (997, 1)];
@@ -198,7 +199,7 @@ fn flat_on_flat_with_two_periods_ends() {
         for pressure in [1e-3, 0.00456, 0.7, 43.2, 1e3] {
             let load = Load::Force(pressure * (mx * my) as f64);
             let scene = Scene { period: Some(BOTH), ..Scene::new(grid, &h, bodies(), load) };
-            // PROJECTED_CG alone may stagnate on a line, and each method alone on a plane at another height.
+            // PROJECTED_CG alone may stagnate on a line, and any method alone on a plane at another height than 0.
             let all = [Method::Auto, Method::Norm, Method::ProjectedCg];
             let is_plain = height == 0.0 && my > 22 && [1e-3, 0.7, 1e3].contains(&pressure);
             for &method in if is_plain { &all[..] } else { &all[..1] } {
@@ -207,7 +208,8 @@ fn flat_on_flat_with_two_periods_ends() {
                 assert_eq!(stop, Outcome::Converged, "{what}");
                 let off = solver.state().p.iter().fold(0.0, |off: f64, p| off.max((p / pressure - 1.0).abs()));
                 assert!(off <= 1e-10, "{what}: off by {off}");
-                // On 3000 such scenes with planes other than 0 the median is 6, the 99th percentile 29, the largest 73.
+                // Measured on 3000 such scenes with planes at other heights than 0: the median is 6, the 99th percentile 29, the largest 73
+                // iterations.
                 let most = if method == Method::Norm {
                     400.0
                 } else if height == 0.0 {
@@ -221,9 +223,9 @@ fn flat_on_flat_with_two_periods_ends() {
     }
 }
 
-/// A uniform p has no displacement, so that the energy is linear along it, and the limit is the answer.
+/// A uniform p causes no displacement, so that the energy is linear in it. Pressures therefore go to the limit, which is the solution.
 #[test]
-fn flat_on_flat_within_limits_fills_them() {
+fn flat_on_flat_within_limits_is_at_its_limits() {
     for (mx, my) in [(1, 1), (2, 4), (3, 11), (10, 23), (64, 64)] {
         for (height, depth, limit) in [(0.0, 1e-6, 1e-4), (-0.3, 0.01, 0.4), (0.7, 0.8, 1e-3)] {
             let (grid, h) = (Grid::new(mx, my, 0.7, 0.7).unwrap(), vec![height; mx * my]);
@@ -240,7 +242,7 @@ fn flat_on_flat_within_limits_fills_them() {
     }
 }
 
-/// Sums of many equal pressures: a plain sum of 160000 has an error of 1e-12, more than a force may have.
+/// Forces are sums of many equal pressures. A plain sum of 160000 of them has an error of 1e-12, more than the library allows for a force.
 #[test]
 fn forces_that_nearly_all_elements_carry_at_their_limit() {
     for m in [129, 256, 400] {
@@ -261,8 +263,8 @@ fn forces_that_nearly_all_elements_carry_at_their_limit() {
     }
 }
 
-/// A ball beside a hole, with a large part of the contact area at its limit: on the finest grid the contact grows beyond the window of the coarser
-/// one.
+/// A ball beside a hole, with a large part of the contact area at its pressure limit. On the finest grid the contact grows beyond the window that the
+/// coarser grid gives.
 #[test]
 fn a_limit_beside_a_hole_takes_few_iterations() {
     let (width, height) = (2.290208420965782, 2.9958029935958836);

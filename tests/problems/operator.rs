@@ -12,7 +12,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
-/// Sizes: one element, one row, one column, primes, ragged, powers of two and their neighbours.
+/// Numbers of elements in x and y: one element, one row, one column, primes, powers of two and their neighbours, and others.
 const SIZES: [(usize, usize); 15] = [
     (1, 1),
     (1, 2),
@@ -39,7 +39,7 @@ fn product(influence: &Coefficients, grid: &Grid, p: &[f64], threads: &Threads) 
     u
 }
 
-/// The bound of the issue: 1e-13 of max |u|. FFT round-off is about eps log2(px py) = 3e-15.
+/// Asserts that the product by FFT equals the direct sum to 1e-13 of max |u|. The round-off of an FFT is about eps log2(px py) = 3e-15.
 fn check(influence: &Coefficients, grid: &Grid, p: &[f64]) {
     let u = product(influence, grid, p, &Threads::One);
     let mut exact = vec![0.0; grid.len()];
@@ -55,7 +55,7 @@ fn fft_and_direct_summation_agree_for_the_half_space() {
         for (dx, dy) in [(1.0, 1.0), (0.02, 1.0), (4.0, 0.7)] {
             let grid = Grid::new(mx, my, dx, dy).unwrap();
             let influence = Coefficients::from(HalfSpace::new(dx, dy, 1e-5));
-            // Pressures everywhere, and on a few rows in the middle only (the pruned path).
+            // Pressures everywhere, and in the middle row only, where the FFT of the other rows is left out.
             let full: Vec<f64> = (0..grid.len()).map(|_| random.next()).collect();
             check(&influence, &grid, &full);
             let rows: Vec<f64> =
@@ -73,7 +73,7 @@ fn fft_and_direct_summation_agree_for_tables_without_any_symmetry() {
             let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
             let mut values: Vec<f64> = (0..4 * cx * cy).map(|_| random.next() - 0.5).collect();
             values[cy * 2 * cx + cx] = 3.0;
-            // The row -cy and the column -cx are not read.
+            // The library does not read the row -cy and the column -cx of a table.
             values[..2 * cx].fill(f64::NAN);
             values.iter_mut().step_by(2 * cx).for_each(|v| *v = f64::INFINITY);
             let influence = Coefficients::from(Table::new(cx, cy, &values, &grid).unwrap());
@@ -83,8 +83,8 @@ fn fft_and_direct_summation_agree_for_tables_without_any_symmetry() {
     }
 }
 
-/// Rows and columns are transformed in lanes or one by one, and there are many kinds of lengths: all numbers of columns and many lengths, in both
-/// precisions. The bounds are those of [`check`] and of `a_single_precision_product_has_single_precision`.
+/// FFTs of rows and columns work on several of them at once or one by one, with different code for different lengths. All numbers of columns and many
+/// lengths are tested, in both precisions. The bounds are those of [`check`] and of `a_single_precision_product_has_single_precision`.
 #[test]
 fn any_number_of_columns_and_either_precision_agree_with_direct_summation() {
     let mut random = Random(7);
@@ -110,7 +110,7 @@ fn any_number_of_columns_and_either_precision_agree_with_direct_summation() {
 
 #[test]
 fn direct_summation_gives_the_displacement_of_a_uniform_pressure() {
-    // Uniform pressure on a rectangle 2a x 2b: u at its centre is 4 [a asinh(b/a) + b asinh(a/b)]/(pi E*) (Love).
+    // A uniform pressure of 1 on a rectangle 2a x 2b displaces its centre by 4 [a asinh(b/a) + b asinh(a/b)]/(pi E*) (Love).
     let (mx, my) = (7, 5);
     let grid = Grid::new(mx, my, 0.3, 0.2).unwrap();
     let influence = Coefficients::from(HalfSpace::new(0.3, 0.2, std::f64::consts::PI));
@@ -152,7 +152,7 @@ fn a_single_precision_product_has_single_precision() {
     }
 }
 
-/// A table in which `c(k)` and `c(-k)` differ by a relative 2 skew, with offsets from `(-cx, -cy)`.
+/// A table of offsets from `(-cx, -cy)`, in which `c(k)` and `c(-k)` differ by a relative 2 `skew`.
 fn skew_table(grid: &Grid, skew: f64, random: &mut Random) -> Table {
     let (cx, cy) = (grid.mx as i64, grid.my as i64);
     let mut values: Vec<f64> = (0..4 * cx * cy).map(|_| random.next()).collect();
@@ -168,7 +168,7 @@ fn skew_table(grid: &Grid, skew: f64, random: &mut Random) -> Table {
     Table::new(grid.mx, grid.my, &values, grid).unwrap()
 }
 
-/// If a table is symmetric to the rounding of single precision, its product in single precision takes half the memory.
+/// If a table is symmetric to the round-off of single precision, its single-precision operator treats it as symmetric and takes half the memory.
 #[test]
 fn in_single_precision_a_table_symmetric_to_round_off_has_a_real_spectrum() {
     let mut random = Random(5);
@@ -193,7 +193,7 @@ fn in_single_precision_a_table_symmetric_to_round_off_has_a_real_spectrum() {
                 bytes.push(operator.bytes());
             }
         }
-        // One column or row is both symmetric and even, up to the skew.
+        // A table of one column or row is both symmetric and even, up to the skew, so that memory does not differ as below.
         if mx > 2 && my > 2 {
             assert!(bytes[..2].iter().all(|symmetric| 10 * symmetric < 7 * bytes[2]), "{grid:?}: {bytes:?}");
             assert_eq!(bytes[2], bytes[3], "{grid:?}");

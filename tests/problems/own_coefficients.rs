@@ -1,4 +1,5 @@
-//! Influence coefficients of the caller: tables that are not symmetric, whose circulant is not positive, of no elastic body, or of another layout.
+//! Influence coefficients of the caller: unsymmetric tables, tables whose circulant is not positive, tables of no elastic body, and tables in another
+//! layout.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -44,14 +45,14 @@ fn a_table_of_the_half_space_gives_the_pressures_of_the_half_space() {
 fn a_table_without_symmetry_is_solved_as_it_is() {
     let grid = Grid::new(24, 20, 0.1, 0.1).unwrap();
     let h = paraboloid(&grid, 0.3);
-    // 10 % more influence on one side than on the other.
+    // The influence is 10 % larger on one side than on the other.
     let influence = table_of(&grid, 24, 20, |kx, _, value| value * (1.0 + 0.05 * (kx.signum() as f64)));
     let scene =
         Scene { influence: Some(influence.clone()), ..Scene::new(grid, &h, rigid_on(1.0), Load::Approach(0.1)) };
     for method in [Method::Auto, Method::Norm, Method::Multigrid, Method::FullMultigrid] {
         let solver = certified(&scene, &Options { method, tolerance: 1e-9, ..Options::default() });
         let state = solver.state();
-        // e by direct summation.
+        // The distance e with displacements by direct sums.
         let mut u = vec![0.0; grid.len()];
         super::dense::apply(&Coefficients::from(influence.clone()), &grid, &state.p, &mut u);
         for i in 0..grid.len() {
@@ -80,8 +81,8 @@ fn the_update_criterion_ends_with_a_force_for_a_table_without_symmetry() {
 
 #[test]
 fn a_table_whose_circulant_is_not_positive_is_solved_all_the_same() {
-    // A product of damped cosines is positive definite (its transform is a product of Lorentzians), but wrapped around half a
-    // period it is not.
+    // A product of damped cosines is positive definite, because its transform is a product of Lorentzians. Its circulant, wrapped around half a
+    // period, is not.
     let grid = Grid::new(16, 16, 1.0, 1.0).unwrap();
     let h = paraboloid(&grid, 0.01);
     let wave = |k: i64| (0.9 * k as f64).cos() * (-0.05 * k.abs() as f64).exp();
@@ -114,7 +115,8 @@ fn an_indefinite_table_is_refused() {
     }
 }
 
-/// Tables of other layouts: padded behind, offset (0, 0) first; and rows whose own coefficient is not the largest. Coefficients to one side alone may be larger.
+/// Tables in other layouts: padded behind, or with offset (0, 0) first; and rows in which the coefficient of an element on itself is not the largest.
+/// Of a pair of opposite offsets one coefficient alone may be larger.
 #[test]
 fn coefficients_larger_than_that_of_an_element_on_itself_are_refused() {
     let grid = Grid::new(12, 9, 1.0, 1.0).unwrap();
@@ -146,7 +148,7 @@ fn coefficients_larger_than_that_of_an_element_on_itself_are_refused() {
     };
     assert_eq!(rows(1.0).unwrap(), Outcome::Converged);
     assert!(matches!(rows(0.2).unwrap_err(), Error::NotPositiveDefinite(text) if text.contains("itself")));
-    // Nor does a solver take one in place of its own.
+    // A solver does not accept such a table in the place of a good one, either.
     let [good, shifted] = [0, 1].map(|by| table_of(&grid, 12, 9, |kx, ky, _| half_space.at(kx + by, ky + by)));
     let scene = Scene { influence: Some(good), ..Scene::new(grid, &h, rigid_on(1.0), Load::Approach(1.0)) };
     let mut solver = Solver::new(&scene, &Options::default()).unwrap();

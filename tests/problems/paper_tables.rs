@@ -1,4 +1,4 @@
-//! Tables 1, 2 and 3 of the paper. "Measured" is the count of an exact, independent implementation of the paper's recipe.
+//! Tables 1, 2 and 3 of the paper. A count is called measured if it is that of an exact, independent implementation of the paper's recipe.
 
 use crate::paper as case;
 
@@ -6,7 +6,7 @@ use case::{linear_system, whole_problem};
 use contact_normal::methods::multigrid::SmootherKind::{GaussSeidel, Jacobi, RedBlack};
 use contact_normal::solver::{Method, Outcome};
 
-/// Grid, omega, and the paper's count and factor (4 digits).
+/// The elements of a side, omega, and the paper's number of cycles and convergence factor (4 digits).
 const TABLE_1: [(usize, f64, u64, f64); 6] = [
     (64, 1.1, 10, 0.2428),
     (64, 0.8, 9, 0.1927),
@@ -16,12 +16,12 @@ const TABLE_1: [(usize, f64, u64, f64); 6] = [
     (128, 1.0, 10, 0.2402),
 ];
 
-/// Grid, and for V(1,1), V(1,0), V(0,1) the larger of the paper's and the measured count.
+/// The elements of a side, and for V(1,1), V(1,0) and V(0,1) the larger of the paper's and the measured number of cycles.
 const TABLE_2: [(usize, [u64; 3]); 4] =
     [(32, [9, 16, 16]), (64, [10, 17, 16]), (128, [10, 17, 16]), (256, [12, 20, 28])];
 const TABLE_3: [(usize, [u64; 3]); 4] = [(32, [7, 13, 13]), (64, [6, 11, 12]), (128, [6, 9, 9]), (256, [7, 10, 8])];
 
-/// Grid, the measured iterations of NORM with conjugate gradients, and its active-set steps.
+/// The elements of a side, and of NORM with conjugate gradients the measured numbers of iterations and of active-set steps.
 const NORM: [(usize, u64, u64); 4] = [(32, 77, 5), (64, 130, 7), (128, 193, 8), (256, 276, 9)];
 
 #[test]
@@ -30,7 +30,7 @@ fn table_1_counts_and_factors_are_the_printed_ones() {
         let (stop, report, measured) = linear_system(m, Method::Multigrid, GaussSeidel, omega, 100);
         assert_eq!(stop, Outcome::Converged);
         assert_eq!(report.count.cycles, count, "{m} x {m}, omega {omega}");
-        // The factors are printed to four digits.
+        // Half a unit of the last of the four printed digits.
         assert!((measured - factor).abs() <= 0.5e-4, "{m} x {m}, omega {omega}: {measured} for {factor}");
     }
 }
@@ -66,8 +66,8 @@ fn table_2_norm_needs_the_measured_iterations() {
     for (m, iterations, steps) in NORM {
         let (stop, report) = whole_problem(m, Method::Norm, 1, 1);
         assert_eq!((stop, report.count.active_set_steps), (Outcome::Converged, steps));
-        // Without a preconditioner the count depends on the round-off of A: with changes of the coefficients by half a unit in their last place the
-        // second grid takes 129 to 134 iterations, the third 196 to 198 (docs/notes/2026-11-performance-targets.md).
+        // Without a preconditioner the number depends on the round-off of A: if the coefficients change by half a unit in their last place, the
+        // second grid takes 129 to 134 iterations, and the third one 196 to 198 (docs/notes/2026-11-performance-targets.md).
         let off = (report.count.cycles as f64 / iterations as f64 - 1.0).abs();
         let is_seen = m == 64 && (129..=134).contains(&report.count.cycles);
         assert!(off <= 0.03 || is_seen, "{m} x {m}: {} iterations for {iterations}", report.count.cycles);
@@ -79,7 +79,7 @@ fn jacobi_does_not_converge_on_a_fine_grid() {
     for omega in [1.0, 0.5] {
         let (stop, report, _) = linear_system(128, Method::Multigrid, Jacobi, omega, 100);
         assert_ne!(stop, Outcome::Converged, "omega {omega}");
-        // The best iterate is returned, but it is far from a solution.
+        // The best iterate is returned. It is far from a solution.
         assert!(report.measures.certificate.residual > 1e-6 && report.measures.certificate.residual.is_finite());
     }
 }
@@ -95,7 +95,7 @@ fn red_black_is_worse_than_lexicographic() {
 
 #[test]
 fn a_v11_cycle_costs_three_products_on_the_finest_grid_and_a_third_more_on_the_others() {
-    // The growth of the wall time is printed by the paper_tables example.
+    // The example paper_tables prints how the wall time grows.
     for m in [64, 256] {
         let (_, report) = whole_problem(m, Method::Multigrid, 1, 1);
         assert_eq!(report.count.matrix_products, 3 * report.count.cycles);

@@ -1,4 +1,5 @@
-//! Effect `patches`: independent patches equal separate scenes, factors of 1 are no effect, and the equations hold with the direct sum.
+//! Effect `patches`: independent patches have the pressures of separate scenes, factors of 1 have no effect, and the contact conditions hold by
+//! direct sums.
 
 use super::dense;
 use crate::support::run;
@@ -7,7 +8,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Each, Layer, Load, Patches, PressureLimit, Scene};
 use contact_normal::solver::{solve, Method, Options, Solver};
 
-/// Two or three bumps side by side, and the patch of each element: thirds of the grid in x.
+/// Three bumps side by side, and the patch of each element: the patches are thirds of the grid in x.
 fn bumps(grid: &Grid) -> (Vec<f64>, Vec<i32>) {
     let patch: Vec<i32> = (0..grid.len()).map(|i| (3 * (i % grid.mx) / grid.mx) as i32).collect();
     let h = (0..grid.len())
@@ -50,7 +51,7 @@ fn the_equations_hold_with_the_direct_sum() {
                         *u += FACTORS[(3 * patch[i] + b) as usize] * product[i];
                     }
                 }
-                // One of some 300 elements in contact may have all of the residual of 1e-10.
+                // The residual of 1e-10 is an rms over some 300 elements in contact, of which one may have all of it: a factor of about 20.
                 let allowed = 20.0 * 1e-10 * u.iter().copied().fold(0.0, f64::max);
                 for i in 0..grid.len() {
                     let give = match layer {
@@ -71,7 +72,7 @@ fn the_equations_hold_with_the_direct_sum() {
 
 #[test]
 fn independent_patches_are_scenes_of_their_own() {
-    // The grid is larger than the smallest one with windows.
+    // The grid is so large that products use windows.
     let grid = Grid::new(96, 64, 0.5, 0.5).unwrap();
     let (h, patch) = bumps(&grid);
     let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.8));
@@ -83,7 +84,7 @@ fn independent_patches_are_scenes_of_their_own() {
         let (single, of_one) = run(&Scene { undeformed_distance: &alone, ..plain.clone() }, &tight(Method::Auto));
         force += of_one.measures.force;
         for (i, p) in together.state().p.iter().enumerate().filter(|(i, _)| patch[*i] == a) {
-            // Relative residuals of 1e-10, condition numbers of some 100.
+            // Relative residuals of 1e-10 and condition numbers of some 100.
             let (expected, largest) = (single.state().p[i], report.measures.max_pressure);
             assert!((p - expected).abs() <= 1e-7 * largest, "patch {a}, element {i}: {p}, alone {expected}");
         }
@@ -112,7 +113,7 @@ fn factors_of_one_are_none() {
 fn nothing_touches_where_there_is_no_patch() {
     let grid = Grid::new(60, 22, 1.0, 0.8).unwrap();
     let (h, mut patch) = bumps(&grid);
-    // The middle of the first bump and a strip are in no patch, which equals elements without a surface.
+    // The middle of the first bump and some rows are in no patch. This equals elements without a surface.
     let is_none = |i: usize| i % 60 == 10 || (i / 60) % 7 == 3;
     let holes: Vec<f64> = (0..grid.len()).map(|i| if is_none(i) { f64::INFINITY } else { h[i] }).collect();
     let of_holes = patch.clone();
@@ -125,12 +126,12 @@ fn nothing_touches_where_there_is_no_patch() {
         for method in [Method::Auto, Method::Norm] {
             let (found, _) = run(&scene(&h, &patch), &tight(method));
             let (expected, _) = run(&scene(&holes, &of_holes), &tight(method));
-            // With a residual of 1e-10 errors are some 1e-9 of the pressures; sums over patches have another order.
+            // With a residual of 1e-10 errors are some 1e-9 of the pressures. Sums over patches are taken in another order.
             let largest = expected.state().p.iter().copied().fold(0.0, f64::max);
             let same = |p: &[f64]| p.iter().zip(&expected.state().p).all(|(a, b)| (a - b).abs() <= 1e-7 * largest);
             assert!(same(&found.state().p), "{load:?} {method:?}");
             assert!((0..grid.len()).all(|i| !is_none(i) || found.state().p[i] == 0.0));
-            // A handle that was set up with the patches.
+            // A handle that is set up with the patches has the same pressures, bit for bit.
             let mut handle = Solver::new(&scene(&h, &patch), &tight(method)).unwrap();
             handle.solve(&scene(&h, &patch), &tight(method), None, None).unwrap();
             assert_eq!(handle.state().p, found.state().p);

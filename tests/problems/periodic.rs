@@ -1,4 +1,5 @@
-//! Effect `period`: the coefficients compared with their symbol, Westergaard's wavy contact, full contact, and the limit of a long period.
+//! Effect `period`: the coefficients compared with their symbol, Westergaard's wavy contact, full contact, and a period so long that it has no
+//! effect.
 
 use std::f64::consts::PI;
 
@@ -13,7 +14,7 @@ use contact_normal::threads::Threads;
 use super::dense;
 use crate::families::case::Random;
 
-/// 1/E* = 1: then c = 1/pi.
+/// Bodies with 1/E* = 1, so that the factor c of the coefficients is 1/pi.
 fn bodies() -> Bodies {
     Bodies::same(1.0, 0.0)
 }
@@ -26,8 +27,8 @@ fn periodic(grid: &Grid, directions: (bool, bool)) -> Periodic {
     Periodic::new(HalfSpace::new(grid.dx, grid.dy, 1.0), directions, grid).unwrap()
 }
 
-/// `sum over n of (-1)^n f(n)` from n = 0, for f smooth and falling: Cohen, Rodriguez Villegas & Zagier (2000), algorithm 1. The error is 5.8^-24 of
-/// the sum.
+/// `sum over n of (-1)^n f(n)` from n = 0 on, for a smooth f that falls: algorithm 1 of Cohen, Rodriguez Villegas & Zagier (2000). The error is
+/// 5.8^-24 of the sum.
 fn alternating(f: impl Fn(f64) -> f64) -> f64 {
     const TERMS: i32 = 24;
     let d = (3.0 + 8f64.sqrt()).powi(TERMS);
@@ -46,11 +47,11 @@ fn over_aliases(a: f64, f: impl Fn(f64) -> f64) -> f64 {
     alternating(|n| f(a + n) / (a + n)) + alternating(|n| f(1.0 - a + n) / (1.0 - a + n))
 }
 
-/// The symbol of the exact coefficients at the wave (jx, jy): `sum over aliases of 2 c pi/|q| sinc sinc`, c pi = 1.
+/// The symbol of the exact coefficients at the wave (jx, jy), `sum over aliases of 2 c pi/|q| sinc sinc` with c pi = 1.
 fn exact_spectrum(grid: &Grid, jx: usize, jy: usize) -> f64 {
     let (a, b) = (jx as f64 / grid.mx as f64, jy as f64 / grid.my as f64);
     let q = |a: f64, b: f64| 2.0 * PI * (a / grid.dx).hypot(b / grid.dy);
-    // sin(pi (a + n))/(pi (a + n)) = (-1)^n sin(pi a)/(pi (a + n)), and for a = 0 only n = 0 is left
+    // sin(pi (a + n))/(pi (a + n)) = (-1)^n sin(pi a)/(pi (a + n)). For a = 0 only n = 0 remains.
     let in_x = |b: f64| match jx {
         0 => 2.0 / q(0.0, b),
         _ => (PI * a).sin() / PI * over_aliases(a, |a| 2.0 / q(a, b)),
@@ -78,7 +79,7 @@ fn with_two_periods_the_coefficients_have_the_exact_spectrum() {
                         sum += periodic.at(kx as i64, ky as i64) * phase.cos();
                     }
                 }
-                // Coefficients have errors of some 1e-14 of the largest images' sum, and n of them are added.
+                // Coefficients have errors of some 1e-14 of the sum of the largest images, and n of them are added.
                 let exact = exact_spectrum(&grid, jx, jy);
                 let scale = periodic.at(0, 0) * grid.len() as f64;
                 assert!((sum - exact).abs() <= 1e-13 * scale, "{grid:?} ({jx}, {jy}): {sum}, exact {exact}");
@@ -87,7 +88,7 @@ fn with_two_periods_the_coefficients_have_the_exact_spectrum() {
     }
 }
 
-/// `integral of log(w/|y|)` from 0.
+/// The integral of `log(w/|y|)` from 0 to y.
 fn log_integral(y: f64, w: f64) -> f64 {
     if y == 0.0 {
         0.0
@@ -97,7 +98,7 @@ fn log_integral(y: f64, w: f64) -> f64 {
 }
 
 #[test]
-fn with_one_period_they_are_the_sum_of_images_and_their_mean_is_that_of_plane_strain() {
+fn with_one_period_coefficients_are_the_sum_of_images_and_their_mean_is_that_of_plane_strain() {
     for (mx, my, dx, dy) in
         [(8, 8, 1.0, 1.0), (9, 4, 0.5, 0.75), (1, 12, 2.0, 1.0), (6, 40, 0.1, 0.2), (40, 3, 1.0, 2.0)]
     {
@@ -109,12 +110,12 @@ fn with_one_period_they_are_the_sum_of_images_and_their_mean_is_that_of_plane_st
         for ky in 0..my as i64 {
             let mean = (0..mx as i64).map(|kx| along_x.at(kx, ky)).sum::<f64>() / mx as f64;
             let (from, to) = ((ky as f64 - 0.5) * dy, (ky as f64 + 0.5) * dy);
-            // c dx 2/L times the integral of log(W/|y|) over the element; c = 1/pi
+            // Exact: c dx 2/L times the integral of log(W/|y|) over the element, with c = 1/pi.
             let exact = 2.0 * dx / (PI * length) * (log_integral(to, width) - log_integral(from, width));
             let scale = along_x.at(0, 0);
             assert!((mean - exact).abs() <= 1e-13 * scale, "{grid:?} {ky}: {mean}, exact {exact}");
             for kx in 0..mx as i64 {
-                // 40000 images on either side, less those of (0, 0): the error is of second order, x^2/(N L)^2.
+                // The sum has 40000 images on either side. Less the same sum at (0, 0) its error is of second order, x^2/(N L)^2.
                 let images = (1..=40_000).rev().map(|n| n * mx as i64);
                 let sum: f64 = images
                     .map(|n| {
@@ -185,8 +186,8 @@ fn westergaards_wavy_contact() {
         for m in [256, 1024, 4096] {
             let (pressure, area) = westergaard(m, share, along_x);
             let in_contact = m as f64 * 2.0 * share.sqrt().asin() / PI;
-            // The area is a number of elements, two of which the edges cut. The pressure has a square root at the edge, so that errors of the last
-            // elements are the root of their size: an rms of 0.1 to 0.6 over the number of elements.
+            // The contact area is a whole number of elements, and its edges cut two of them. At the edge the pressure is like a square root, so that
+            // the error in the last elements is the root of their size: the measured rms is 0.1 to 0.6 over the number of elements.
             assert!(area <= 2.0 / in_contact, "{m}, {share}: area off by {area}");
             assert!(pressure <= 1.0 / in_contact, "{m}, {share}: pressures off by {pressure}, {in_contact}");
             if m == 4096 {
@@ -198,8 +199,8 @@ fn westergaards_wavy_contact() {
 
 #[test]
 fn full_contact_of_a_wavy_surface() {
-    // h = d cos(qx x) cos(qy y) is flattened by p - mean = -d |q|/2 E* cos cos (Johnson 13.3). On elements there are factors sinc sinc and aliases:
-    // so the exact symbol replaces 2/|q|.
+    // h = d cos(qx x) cos(qy y) is flattened by p - mean = -d |q|/2 E* cos cos (Johnson 13.3). Pressures on elements have factors sinc sinc and
+    // aliases, so that 2/|q| becomes the exact symbol.
     let (mx, my) = (24, 18);
     let grid = Grid::new(mx, my, 0.5, 0.5).unwrap();
     let wave =
@@ -214,7 +215,7 @@ fn full_contact_of_a_wavy_surface() {
             solve(&scene, &Options { method, tolerance: 1e-10, ..Options::default() }).unwrap();
         assert_eq!(stop, Outcome::Converged, "{method:?}");
         assert_eq!(report.measures.contact_count, grid.len());
-        // The mean plane does not move: the approach is the mean distance, to the tolerance relative to d.
+        // In full contact the mean plane does not move: the approach is the mean of h, to the tolerance relative to d.
         assert!(
             (report.measures.approach - lift).abs() <= 1e-9 * amplitude,
             "{method:?}: {}",
@@ -225,11 +226,11 @@ fn full_contact_of_a_wavy_surface() {
             assert!((p - exact).abs() <= 1e-8 * peak, "{method:?}, element {i}: {p}, exact {exact}");
         }
     }
-    // Below 0.8 of the peak contact is not full.
+    // At .75 of the force of full contact the contact is not full.
     let partial = Scene { load: Load::Force(0.75 * peak * area), ..scene };
     let (_, _, report) = solve(&partial, &Options::default()).unwrap();
     assert!(report.measures.contact_count < grid.len());
-    // The approach of this result, prescribed, gives the same force: to 1e-5, because the tolerance is 1e-6 and near full contact the force is
+    // If the approach of this result is prescribed, the force is the same to 1e-5: the tolerance is 1e-6, and near full contact the force is
     // sensitive to the approach.
     let by_approach = Scene { load: Load::Approach(report.measures.approach), ..partial };
     let (_, stop, again) = solve(&by_approach, &Options { tolerance: 1e-9, ..Options::default() }).unwrap();
@@ -240,8 +241,8 @@ fn full_contact_of_a_wavy_surface() {
 
 #[test]
 fn a_period_much_longer_than_the_contact_is_as_good_as_none() {
-    // A ball, with contact radius a, in the middle of a period L. The displacement by the images is uniform over the contact up to a^2/L^2. It is
-    // F/(pi L) times a lattice sum of order 4, compared with an approach of 3 F/(4 a): the error is of order (a/L)^3 with a constant below 10.
+    // A ball with the contact radius a, in the middle of a period L. The displacement by the images is uniform over the contact up to a^2/L^2. It is
+    // F/(pi L) times a lattice sum of order 4, beside an approach of 3 F/(4 a). So the error is of order (a/L)^3, with a constant below 10.
     let m = 96;
     let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
     let h: Vec<f64> = (0..grid.len())
@@ -251,7 +252,7 @@ fn a_period_much_longer_than_the_contact_is_as_good_as_none() {
         })
         .collect();
     let radius: f64 = 8.0;
-    // F = 4 E* a^3/(3 R)
+    // Hertz: F = 4 E* a^3/(3 R), with E* = 1 and R = 1000.
     let load = Load::Force(4.0 * radius.powi(3) / 3000.0);
     let options = Options { tolerance: 1e-9, ..Options::default() };
     let (free, _, _) = solve(&Scene::new(grid, &h, bodies(), load), &options).unwrap();
@@ -260,7 +261,7 @@ fn a_period_much_longer_than_the_contact_is_as_good_as_none() {
         let (found, stop, _) = solve(&scene(grid, &h, directions, load), &options).unwrap();
         assert_eq!(stop, Outcome::Converged);
         for (a, b) in found.state().p.iter().zip(&free.state().p) {
-            // At the edge of contact the pressure has a square root: elements there may change by the root of that error.
+            // At the edge of contact the pressure is like a square root, so that elements there may change by the root of that error.
             assert!(
                 (a - b).abs() <= largest * (10.0 * (radius / m as f64).powi(3)).sqrt(),
                 "{directions:?}: {a}, free {b}"
@@ -303,8 +304,8 @@ fn moving_the_origin_moves_the_solution_and_no_count_of_elements_is_refused() {
             assert_eq!(stop, Outcome::Converged, "{mx} x {my} {load:?}");
             let (again, stop, _) = solve(&scene(grid, &moved, (true, true), load), &options).unwrap();
             assert_eq!(stop, Outcome::Converged);
-            // With a relative residual of 1e-9 in displacements pressures of the shortest waves have errors of up to that times the condition number,
-            // about the number of elements across; 1e-6 includes a margin.
+            // A relative residual of 1e-9 in displacements allows errors of pressures in the shortest waves: that times the condition number, which
+            // is about the number of elements across. 1e-6 includes a margin.
             for i in 0..h.len() {
                 let change = (again.state().p[i] - solver.state().p[shift(i)]).abs();
                 assert!(change <= 1e-6 * report.measures.max_pressure, "{mx} x {my} {load:?}: {change}");
@@ -317,7 +318,8 @@ fn moving_the_origin_moves_the_solution_and_no_count_of_elements_is_refused() {
 
 #[test]
 fn the_iteration_needs_no_more_products_than_without_a_period() {
-    // The circulant of the period is the operator, except for the contact area: 9 to 16 products, without a period 9 to 15.
+    // On a period the circulant equals the operator, except for the restriction to the contact area. Measured: 9 to 16 products, and 9 to 15 without
+    // a period.
     let (mx, my) = (128, 128);
     let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
     let h = rough(mx, my);
@@ -347,7 +349,7 @@ fn coarser_grids_have_the_coefficients_that_their_elements_have() {
             let anew = periodic(&grid, directions);
             let largest = anew.at(0, 0);
             for (kx, ky) in (0..grid.len() as i64).map(|i| (i % grid.mx as i64, i / grid.mx as i64)) {
-                // The error of 12 Chebyshev nodes (src/influence/periodic.rs), and of sums over up to 1300 images.
+                // The tolerance is the error of 12 Chebyshev nodes (src/influence/periodic.rs), and of sums over up to 1300 images.
                 let (value, exact) = (coefficients.at(kx, ky), anew.at(kx, ky));
                 assert!((value - exact).abs() <= 1e-12 * largest, "{grid:?} ({kx}, {ky}): {value} {exact}");
             }
@@ -372,13 +374,13 @@ fn what_a_period_cannot_do_is_refused_by_name() {
     refuse(&by_force, Method::Multigrid, &["MULTIGRID", "period"]);
     refuse(&by_force, Method::FullMultigrid, &["FULL_MULTIGRID", "period"]);
     refuse(&scene(grid, &h, (false, false), Load::Force(1.0)), Method::Auto, &["period", "0"]);
-    // An element without a surface carries no pressure: then even a deep approach has a solution.
+    // An element without a surface carries no pressure. If there is one, even an approach beyond the mean has a solution.
     let mut hole = h.clone();
     hole[27] = f64::INFINITY;
     let (_, stop, report) =
         solve(&scene(grid, &hole, (true, true), Load::Approach(mean + 0.1)), &Options::default()).unwrap();
     assert_eq!((stop, report.measures.contact_count), (Outcome::Converged, 63));
-    // A handle keeps its period.
+    // A handle keeps its period, and refuses a scene with another one.
     let mut solver = Solver::new(&by_force, &Options::default()).unwrap();
     assert!(solver.solve(&by_force, &Options::default(), None, None).is_ok());
     let other = Scene { period: Some(Period { x: true, y: false }), ..by_force };

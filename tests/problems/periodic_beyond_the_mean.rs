@@ -1,5 +1,5 @@
-//! Two periods with approaches at and beyond the mean of h, which fixed contact areas and pressure limits allow. Conditions are checked with direct
-//! sums.
+//! Two periods, with approaches at and beyond the mean of h. Such approaches have a solution only with a fixed contact area or with pressure limits.
+//! The conditions are checked by direct sums.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -44,7 +44,7 @@ fn a_given_contact_area_needs_no_gap() {
                 (0..p.len()).filter(|&i| contact[i]).map(|i| value(i).powi(2)).sum::<f64>().sqrt()
             };
             let residual = of(&|i| h[i] - approach + u[i]) / of(&|i| h[i] - approach);
-            // The tolerance, and the round-off of two products.
+            // The tolerance of 1e-9, and 1 % of it for the different round-off of direct sums and FFT products.
             assert!(residual <= 1.01e-9, "{method:?} {approach}: {residual}");
             assert!((0..p.len()).all(|i| contact[i] || p[i] == 0.0));
         }
@@ -66,12 +66,12 @@ fn a_given_contact_area_that_is_full_takes_a_force() {
     let by_force = Scene { load: Load::Force(1e3), ..scene(&h, 0.0) };
     let mut solver = Solver::new(&by_force, &options).unwrap();
     let (stop, report) = solver.solve(&by_force, &options, guess, None).unwrap();
-    // The mean of h, to the tolerance of the certificate.
+    // The approach is the mean of h, 0, to the tolerance of the certificate.
     assert_eq!(stop, Outcome::Converged);
     assert!(report.measures.approach.abs() <= options.tolerance * 2.0, "{}", report.measures.approach);
 }
 
-/// Elements at their limit do not follow the mean distance: the others have it.
+/// Beyond the mean of h the mean of e is negative. Elements at their limit may have a negative e, so that the others need not.
 #[test]
 fn limits_give_way_beyond_the_mean() {
     let h = surface();
@@ -92,7 +92,7 @@ fn limits_give_way_beyond_the_mean() {
                 PressureLimit(Each::PerElement(limits)) => limits[i],
             };
             let scale = (0..p.len()).map(|i| (h[i] - approach).powi(2)).sum::<f64>().sqrt();
-            // The tolerance, which one element may have alone.
+            // The tolerance of 1e-8, which one element alone may have.
             for i in 0..p.len() {
                 let e = (h[i] - approach + u[i]) / scale;
                 assert!(p[i] >= 0.0 && p[i] <= most(i), "{what}: {} of {}", p[i], most(i));
@@ -105,8 +105,8 @@ fn limits_give_way_beyond_the_mean() {
     assert!(matches!(solve(&none, &Options::default()), Err(Error::Infeasible(_))));
 }
 
-/// Balls with noise at approaches slightly above the mean, below limits of 10 to 1e4 times the pressures that flatten them: some elements reach their limits,
-/// though full contact without limits is near.
+/// Balls with noise, at approaches slightly above the mean of h. The limits are 10 to 1e4 times the pressures that flatten the surface. Some elements
+/// reach their limits, although without limits contact would be nearly full.
 #[test]
 fn high_limits_are_reached_slightly_beyond_the_mean() {
     let options = Options::default();
@@ -134,7 +134,7 @@ fn high_limits_are_reached_slightly_beyond_the_mean() {
         }
     }
     println!("at most {most} products");
-    // Twice the most of these scenes.
+    // The bound is twice the largest number of products that was measured.
     assert!(most <= 300.0, "{most}");
 }
 

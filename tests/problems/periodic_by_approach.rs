@@ -1,5 +1,5 @@
-//! Two periods by approach: an approach near the mean of h is feasible on the finest grid, but on coarser ones only if their h has the same mean. The
-//! certificates are computed by direct sums.
+//! Two periods with a given approach. An approach just below the mean of h has a solution on the finest grid, but on coarser grids only if their h
+//! has the same mean. The certificates are recomputed by direct sums.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Each, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
-/// A random surface of all waves up to `m/part`, with amplitudes that fall as `k^-1.8`.
+/// A random surface with all wave numbers up to `m/part`, and amplitudes that fall as `k^-1.8`.
 pub fn rough(m: usize, part: usize, seed: u64) -> Vec<f64> {
     let mut state = seed;
     let mut next = || {
@@ -33,7 +33,7 @@ pub fn rough(m: usize, part: usize, seed: u64) -> Vec<f64> {
     h
 }
 
-/// u = A p.
+/// The displacements u = A p by direct sums over coefficients that are even in x and y.
 pub fn displacements(scene: &Scene<'_>, p: &[f64]) -> Vec<f64> {
     let (mx, my) = (scene.grid.mx, scene.grid.my);
     let coefficients = scene.coefficients().unwrap();
@@ -49,8 +49,8 @@ pub fn displacements(scene: &Scene<'_>, p: &[f64]) -> Vec<f64> {
     u
 }
 
-/// At 0.98 of the mean these take 25 to 120 work units, because a constant on nearly full contact converges slowly. The h of the coarse grids is
-/// shifted to the same mean.
+/// Measured: approaches of 0.98 of the mean take 25 to 120 work units, because a constant converges slowly on nearly full contact. The library shifts
+/// the h of coarse grids to the same mean.
 #[test]
 fn approaches_near_the_mean_are_solved() {
     for m in [25, 36, 50, 100, 101] {
@@ -77,7 +77,7 @@ fn approaches_near_the_mean_are_solved() {
     }
 }
 
-/// A single element with two periods has no displacement: an approach below its h leaves it without contact, and an approach of its h is full
+/// A single element with two periods has no displacement. An approach below its h leaves it without contact, and an approach equal to its h is full
 /// contact.
 #[test]
 fn a_single_element_has_its_own_distance_for_an_approach() {
@@ -96,7 +96,7 @@ fn a_single_element_has_its_own_distance_for_an_approach() {
     }
 }
 
-/// Beyond its own distance a single element carries its limit, however large the approach is.
+/// With an approach beyond its h a single element is at its limit, however large the approach is.
 #[test]
 fn a_single_element_carries_its_limit() {
     let (grid, h) = (Grid::new(1, 1, 0.8, 0.8).unwrap(), [0.3]);

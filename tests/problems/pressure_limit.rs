@@ -1,5 +1,5 @@
-//! Effect `pressure_limit`: the conditions of both sides with a direct sum, no effect if the limit is not reached, forces that cannot be carried, and
-//! an independent method.
+//! Effect `pressure_limit`: the conditions at both bounds by direct sums, no effect if the limit is not reached, forces that cannot be carried, and
+//! all methods compared.
 
 use super::dense;
 use crate::support::run;
@@ -29,7 +29,7 @@ fn tight(method: Method) -> Options {
     Options { method, tolerance: 1e-9, ..Options::default() }
 }
 
-/// The mixed complementarity conditions, with u by direct summation. Returns the number of elements at the limit.
+/// Asserts the mixed complementarity conditions, with u by direct sums. Returns the number of elements at the limit.
 fn assert_holds(scene: &Scene<'_>, solver: &Solver, report: &Report, what: &str) -> usize {
     let (grid, state, limit) = (scene.grid, solver.state(), scene.pressure_limit.unwrap());
     let mut u = vec![0.0; grid.len()];
@@ -38,7 +38,7 @@ fn assert_holds(scene: &Scene<'_>, solver: &Solver, report: &Report, what: &str)
     if let Some(Layer(Each::Uniform(c))) = scene.layer {
         u.iter_mut().zip(&state.p).for_each(|(u, p)| *u += c * p);
     }
-    // The tolerance of 1e-9 is for the rms over some 1000 elements, one of which may have all of it: a factor of 32.
+    // The tolerance of 1e-9 is for the rms over some 1000 elements, of which one may have all of it: a factor of 32.
     let allowed = 32.0 * 1e-9 * u.iter().copied().fold(0.0, f64::max);
     let mut count = 0;
     for (i, u) in u.iter().enumerate() {
@@ -55,7 +55,7 @@ fn assert_holds(scene: &Scene<'_>, solver: &Solver, report: &Report, what: &str)
         count += usize::from(at_limit);
     }
     if let Load::Force(force) = scene.load {
-        // A sum of pressures, to round-off.
+        // The force is a sum of pressures, correct to round-off.
         assert!((report.measures.force / force - 1.0).abs() <= 1e-12, "{what}: {}", report.measures.force);
     }
     count
@@ -132,7 +132,7 @@ fn up_to_the_greatest_force_and_not_beyond() {
     assert!(message.contains("pressure_limit") && message.contains(&format!("{greatest}")), "{message}");
 }
 
-/// Every second square of elements has a low limit.
+/// Limits as on a checkerboard: every second square of elements has a low one.
 #[test]
 fn checkerboards_of_limits_carry_nearly_the_greatest_force() {
     let grid = Grid::new(32, 32, 0.05, 0.05).unwrap();
@@ -148,7 +148,7 @@ fn checkerboards_of_limits_carry_nearly_the_greatest_force() {
     }
 }
 
-/// Between flat planes any distribution carries the force, but no element may be above its limit.
+/// Between flat planes any distribution of pressures carries the force with the same energy, but no element may be above its limit.
 #[test]
 fn flat_planes_do_not_end_above_a_limit() {
     let grid = Grid::new(8, 8, 1.0, 1.0).unwrap();
@@ -200,7 +200,8 @@ fn noise(n: usize, seed: u64) -> Vec<f64> {
     (0..n).map(|_| next()).collect()
 }
 
-/// Bodies so stiff that displacements at the limit are smaller than differences of heights: nearly all elements in contact are at their limit.
+/// The bodies are so stiff that displacements by pressures at the limit are smaller than differences of height. So nearly all elements in contact are
+/// at their limit.
 #[test]
 fn forces_on_white_noise_from_soft_to_nearly_rigid() {
     let grid = Grid::new(35, 48, 0.1, 0.4).unwrap();
@@ -227,8 +228,8 @@ fn forces_on_white_noise_from_soft_to_nearly_rigid() {
     }
 }
 
-/// An uneven layer on a coated body, with up to ten thousand times its compliance: the diagonal of A is uneven, and the preconditioner, a circulant,
-/// does not include this. Multigrid excludes coatings.
+/// An uneven layer on a coated body, with up to ten thousand times the compliance of the coating. The diagonal of A is uneven, which the
+/// preconditioner, a circulant, does not include. Multigrid does not support coatings.
 #[test]
 fn forces_on_an_uneven_layer() {
     let grid = Grid::new(6, 3, 0.6, 0.6).unwrap();
@@ -261,7 +262,7 @@ fn every_method_and_a_handle_find_the_same() {
     for method in [Method::Norm, Method::Multigrid, Method::FullMultigrid, Method::ProjectedCg] {
         assert!(close(&run(&scene, &tight(method)).0.state().p), "{method:?}");
     }
-    // The next solve, without and with a limit, without a guess and from the last result.
+    // The next solves of a handle, without and with a limit, without a guess and from the last result.
     let mut solver = Solver::new(&scene, &tight(Method::Auto)).unwrap();
     solver.solve(&scene, &tight(Method::Auto), None, None).unwrap();
     let plain = Scene { pressure_limit: None, ..scene.clone() };
@@ -275,7 +276,7 @@ fn every_method_and_a_handle_find_the_same() {
         assert_holds(&scene, &solver, &report, "handle");
         assert!(close(&solver.state().p));
     }
-    // After an early stop pressures are still within the limit.
+    // After an early stop pressures are within the limit, too.
     let (_, stop, _) = solve(&scene, &Options { max_cycles: 1, tolerance: 1e-13, ..Options::default() })
         .map(|(s, stop, r)| {
             assert!(s.state().p.iter().all(|p| (0.0..=0.12).contains(p)));
@@ -313,8 +314,9 @@ fn what_is_no_limit_is_refused_by_name() {
     assert!(error.contains("FIXED") && error.contains("pressure_limit"), "{error}");
 }
 
-/// A limit is a bound inside the iteration: it takes 1.1 to 2.8 times the work units of the plain scene. One scene takes 3.1 times, because its
-/// approach does not move for nine of 42 iterations. Counts, not times. `examples/pressure_limits` prints the costs of limits on 140 scenes.
+/// The library treats a limit as a bound within the iteration. Measured: this takes 1.1 to 2.8 times the work units of the plain scene. One scene
+/// takes 3.1 times, because its approach does not change in nine of 42 iterations. `examples/pressure_limits` prints the costs of limits on 140
+/// scenes.
 #[test]
 fn a_limit_costs_at_most_three_times_the_plain_scene_but_for_one() {
     let mut beyond = 0;

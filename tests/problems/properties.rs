@@ -1,5 +1,5 @@
-//! Properties of every scene, on random ones: the contact conditions, monotonicity, least energy, symmetry, translation, superposition. The scenes
-//! are the same in each run.
+//! Properties that every scene has, tested on random scenes: the contact conditions, monotonicity, least energy, symmetry, translation,
+//! superposition. The scenes are the same each time.
 
 #[allow(dead_code)] // only the certificate is used
 use crate::families::{case, certificate};
@@ -42,7 +42,7 @@ fn bodies() -> impl Strategy<Value = Bodies> {
         .prop_map(|(first, second, nu, mu)| Bodies { shear_modulus: [first, second], poisson_ratio: [nu, mu] })
 }
 
-/// Balls, waves, noise and holes in any mixture, with a depth of 1.
+/// A surface of balls, waves, noise and holes in any mixture, with a depth of 1.
 #[derive(Clone, Debug)]
 struct Surface {
     curvature: (f64, f64),
@@ -119,7 +119,7 @@ proptest! {
     fn more_approach_is_more_force_and_more_area(case in scenes(), factor in 1.01..3.0f64) {
         let (less, more) = (solved(&case), solved(&more(&case, factor)));
         prop_assert!(more.report.measures.force > less.report.measures.force);
-        // The contact of elements at the rim depends on the tolerance.
+        // Whether elements at the rim are in contact depends on the tolerance.
         let lost = (0..less.p.len()).filter(|&i| less.p[i] > 1e-5 * largest(&less.p) && !more.contact[i]).count();
         prop_assert!(more.report.measures.contact_count >= less.report.measures.contact_count || lost == 0);
     }
@@ -137,7 +137,7 @@ proptest! {
                 let options = Options { method, max_cycles, tolerance: TIGHT, ..Options::default() };
                 let found = run_with(&case, &options).expect("a solve");
                 let measures = assert_sound(&case, "some cycles", &found);
-                // The effect of tolerance and rounding: e is this part of h - approach, and the energy is half its work.
+                // The effect of tolerance and round-off: e may be this part of h - approach, and the energy is half its work.
                 let slack = (2.0 * TIGHT + measures.round_off) * exact.abs();
                 prop_assert!(measures.energy >= exact - slack, "{method:?}: {} below {exact}", measures.energy);
             }
@@ -205,13 +205,13 @@ proptest! {
         };
         let alone = [force(&with(first, far), depth), force(&with(far, second), depth)];
         let both = force(&with(first, second), depth);
-        // Each is displaced by the other: u = F/(pi E* distance). Contacts are at most 1 wide and 14 apart.
+        // Each body is displaced by the other one: u = F/(pi E* distance). The contacts are at most 1 wide and 14 apart.
         let pressed = |other: f64| other / (std::f64::consts::PI * 12.0);
         let less = [
             force(&with(first, far), depth - pressed(alone[1])),
             force(&with(far, second), depth - pressed(alone[0])),
         ];
-        // The sharp tip in the place of the other body carries a little as well.
+        // The sharp tip that stands for the other body carries a little, too.
         let tip = force(&with(far, far), depth);
         prop_assert!(both <= alone[0] + alone[1], "{both} of {alone:?}");
         prop_assert!(both >= less[0] + less[1] - 2.0 * tip, "{both} for at least {less:?}");

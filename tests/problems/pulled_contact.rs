@@ -1,4 +1,4 @@
-//! A given contact area that is pulled: forces below 0, with active_set FIXED.
+//! A given contact area that is pulled: negative forces, with active_set FIXED.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -11,7 +11,7 @@ fn fixed(method: Method) -> Options {
     Options { method, active_set: ActiveSet::Fixed, tolerance: 1e-9, estimates: true, ..Options::default() }
 }
 
-/// A ball, and a contact area that is no disc.
+/// The distances of a ball, and a contact area that is not a disc.
 fn bonded(grid: &Grid) -> (Vec<f64>, Vec<bool>) {
     let place = |k: usize, m: usize| k as f64 - 0.5 * (m as f64 - 1.0);
     let of = |i: usize| (place(i % grid.mx, grid.mx), place(i / grid.mx, grid.my));
@@ -20,7 +20,7 @@ fn bonded(grid: &Grid) -> (Vec<f64>, Vec<bool>) {
     (h, contact)
 }
 
-/// Forces of both signs, and 0. By direct sums, all elements have the same approach, and the force is exact to round-off.
+/// Forces of both signs, and 0. By direct sums all elements of the area have the same approach, and the force is exact to round-off.
 #[test]
 fn a_force_that_pulls_is_carried_by_every_method() {
     let grid = Grid::new(22, 17, 0.5, 0.4).unwrap();
@@ -40,7 +40,7 @@ fn a_force_that_pulls_is_carried_by_every_method() {
                 continue;
             }
             let mut solver = Solver::new(scene, &fixed(method)).unwrap();
-            // The last two forces are tiny beside the sum of the pressures that push.
+            // The last two forces are tiny relative to the sum of the positive pressures.
             for force in [-3.0, -1e-3, 0.0, 2.0, -50.0, 1e-22, -1e-12] {
                 let scene = Scene { load: Load::Force(force), ..scene.clone() };
                 let guess = Some(Guess { pressure: &pressure, contact: &contact });
@@ -63,15 +63,15 @@ fn a_force_that_pulls_is_carried_by_every_method() {
                         distance += (h[i] - report.measures.approach).powi(2);
                     }
                 }
-                // The tolerance, and the round-off of two products.
+                // The tolerance of 1e-9, and 1 % of it for the different round-off of direct sums and FFT products.
                 assert!(residual.sqrt() <= 1.01e-9 * distance.sqrt(), "{what}: {}", (residual / distance).sqrt());
             }
         }
     }
 }
 
-/// On a given area the equations are linear: apart from the pressures without a force, twice the force has twice the pressures. A solve from the last solution
-/// makes products too.
+/// On a given area the equations are linear: pressures less those without a force are proportional to the force. A solve from the last solution makes
+/// products of its own.
 #[test]
 fn pulls_add_up() {
     let grid = Grid::new(20, 20, 1.0, 1.0).unwrap();
@@ -106,7 +106,7 @@ fn a_free_contact_area_is_not_pulled() {
     );
 }
 
-/// Flat bodies without a force: p = 0, and the residual is relative to distances of 0.
+/// Flat bodies without a force have p = 0. The residual is relative to distances of 0, and must be a number.
 #[test]
 fn an_even_contact_area_without_force_has_no_pressures() {
     let grid = Grid::new(31, 24, 0.5, 0.4).unwrap();
@@ -145,7 +145,7 @@ fn an_area_with_two_periods_takes_approaches_beyond_the_mean() {
             let (p, mut u) = (&solver.state().p, vec![0.0; h.len()]);
             dense::apply(&scene.coefficients().unwrap(), &grid, p, &mut u);
             for i in (0..h.len()).filter(|i| contact[*i]) {
-                // The tolerance of 1e-9 for the rms, times the square root of the number of elements.
+                // The tolerance of 1e-9 is for the rms; one element may have all of it, the square root of the number of elements times as much.
                 assert!(
                     (h[i] - approach + u[i]).abs() <= 1e-9 * 14.0 * 3.0,
                     "{method:?} {approach}: {}",

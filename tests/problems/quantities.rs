@@ -1,9 +1,9 @@
-//! All quantities of a scene: values and errors beside the closed forms of a ball on a plate, targets and prices.
+//! All quantities of a scene: values and estimated errors compared with the closed forms of a ball on a plate, targets and price lists.
 //!
-//! Ball of radius R, approach d: a^2 = R d, F = 4/3 E* a d, p0 = 2/pi E* a/R, dF/dd = 2 E* a (Johnson 1985, section 4.2). Along the axis below
-//! a Hertz pressure `sr = st`, and the von Mises stress is `|sz - sr|` (Johnson, eq. 3.45); the largest shear stress is half of it. A ball that
-//! is shifted by a tangential force Q sticks on a circle of radius `a (1 - Q/(mu F))^(1/3)`, and is shifted by
-//! `3 mu F (2 - nu)/(8 G a) (1 - (1 - Q/(mu F))^(2/3))` (Cattaneo 1938, Mindlin 1949; both bodies together).
+//! Ball of radius R, approach d: a^2 = R d, F = 4/3 E* a d, p0 = 2/pi E* a/R, dF/dd = 2 E* a (Johnson 1985, section 4.2). On the axis below a Hertz
+//! pressure `sr = st`, and the von Mises stress is `|sz - sr|` (Johnson, eq. 3.45); the largest shear stress is half of it. Under a tangential force
+//! Q the ball sticks in a circle of radius `a (1 - Q/(mu F))^(1/3)`, and is shifted by `3 mu F (2 - nu)/(8 G a) (1 - (1 - Q/(mu F))^(2/3))` (Cattaneo
+//! 1938, Mindlin 1949; both bodies together).
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -34,7 +34,7 @@ fn force() -> f64 {
     4.0 / 3.0 * modulus() * radius_of_contact() * APPROACH
 }
 
-/// The ball on m x m elements, about .6 of the grid wide.
+/// The ball on m x m elements. The contact is about .6 of the grid wide.
 fn ball(m: usize) -> (Grid, Vec<f64>) {
     let d = 3.3 * radius_of_contact() / m as f64;
     let grid = Grid::new(m, m, d, d).expect("a grid");
@@ -45,13 +45,13 @@ fn scene<'a>(grid: Grid, h: &'a [f64]) -> Scene<'a> {
     Scene::new(grid, h, Bodies::same(G, NU), Load::Approach(APPROACH))
 }
 
-/// A shift by half of the force of full slip.
+/// Friction with half the tangential force of full slip.
 fn shifted() -> Friction<'static> {
     let prescribed = [Prescribed::Force(0.5 * MU * force()), Prescribed::Creepage(0.0)];
     Friction { prescribed, ..Friction::new(MU) }
 }
 
-/// The largest von Mises stress on the axis, and its depth.
+/// The largest von Mises stress on the axis, and its depth, by a search over the closed form.
 fn on_the_axis() -> (f64, f64) {
     let (a, p0) = (radius_of_contact(), 2.0 / std::f64::consts::PI * modulus() * radius_of_contact() / RADIUS);
     let at = |z: f64| {
@@ -98,9 +98,9 @@ fn rows(scene: &Scene<'_>, wanted: &[Quantity], coarser: usize) -> Vec<QuantityR
     rows
 }
 
-/// The estimate is at least the true error (from one grid alone, at least a third of it), and at most ten times the true error plus a twentieth of the
-/// value. Cattaneo's shift of a ball is an approximation of the elastic problem with like bodies of nu > 0, by 2 % at most: slip is not quite along the
-/// force (Munisamy, Hills & Nowell 1994).
+/// Asserts that the estimate is at least the true error (from one grid alone, at least a third of it), and at most ten times the true error plus a
+/// twentieth of the value. `theory`: the relative error of the closed form. Cattaneo's shift of a ball is an approximation for like bodies of nu > 0,
+/// by 2 % at most, because slip is not quite along the force (Munisamy, Hills & Nowell 1994).
 fn assert_covered(row: &QuantityRow, theory: f64) {
     let (value, error) = (row.value.expect("a value"), row.error.unwrap_or_else(|| panic!("an error: {row:?}")));
     let off = (value - truth(row.quantity)).abs();
@@ -123,7 +123,7 @@ fn values_and_errors_of_a_ball_on_a_plate() {
         for row in &found[2 * NORMAL.len()..] {
             assert_covered(row, 0.0);
         }
-        // The coarsest grid has nothing to compare with.
+        // The coarsest grid has no estimate, because there is no coarser one to compare with.
         assert_eq!((found[3].error, found[3].lack), (None, Some(Lack::OneGrid)));
         let of_friction = Scene { friction: Some(shifted()), ..scene(grid, &h) };
         for row in &rows(&of_friction, &TANGENTIAL, 2)[2 * TANGENTIAL.len()..] {
@@ -147,7 +147,7 @@ fn the_mean_gap_and_the_moment_are_those_of_the_fields() {
     let moment: f64 = (0..grid.len()).map(moment).sum::<f64>() * grid.element_area();
     let force = [0, 1].map(|k| q.iter().map(|q| q[k]).sum::<f64>() * grid.element_area());
     for (row, value) in found.iter().zip([gap, moment, force[0].hypot(force[1])]) {
-        // Sums of 1024 terms in another order.
+        // Sums of 1024 terms, taken in another order.
         assert!((row.value.expect("a value") - value).abs() <= 1e-10 * value.abs(), "{row:?}: {value:e}");
     }
 }
@@ -186,7 +186,7 @@ fn what_belongs_to_one_grid_is_refused_by_name() {
     assert!(matches!(refused, Err(Error::Unsupported(message)) if message.contains("friction->continues")));
 }
 
-/// The tip of a cone: infinite pressures, and infinite stresses below them.
+/// The tip of a cone has infinite pressures, and infinite stresses below them. Their estimates must be unknown.
 #[test]
 fn a_singular_stress_has_no_error() {
     let (grid, _) = ball(128);
@@ -236,7 +236,7 @@ fn accuracies_and_prices_of_every_quantity_are_kept() {
     }
 }
 
-/// Half of the contact is at its limit: one grid alone has no estimates, several have.
+/// Half of the contact is at its pressure limit. One grid alone has no estimates then, but several grids have.
 #[test]
 fn reached_limits_have_errors_from_several_grids() {
     let limited = |grid: Grid, h: &'static [f64]| Scene {
@@ -263,7 +263,8 @@ fn reached_limits_have_errors_from_several_grids() {
     assert!(off <= 1e-2, "{off:e}: {}", outcome.reason);
 }
 
-/// Forces of steady rolling are of first order: the error is half of the change before, although the last change is fifteen times smaller. One grid has none.
+/// Forces of steady rolling have errors of first order. Here the last change between grids is fifteen times smaller than the one before, by chance.
+/// The estimate is half of the change before. One grid alone has no estimate.
 #[test]
 fn errors_of_tangential_forces_follow_from_the_grids() {
     let grid = Grid::new(48, 48, 0.1, 0.1).expect("a grid");
@@ -284,12 +285,12 @@ fn errors_of_tangential_forces_follow_from_the_grids() {
     let [coarse, middle, last] = [0, 1, 2].map(|k| found[k].value.expect("a force"));
     let (error, before) = (found[2].error.expect("an error"), (middle - coarse).abs());
     assert!((last - middle).abs() < 0.1 * before, "{found:?}");
-    // The residual of 1e-6 adds less.
+    // The residual of 1e-6 adds less than 1e-3 of the estimate.
     assert!((error / (0.5 * before) - 1.0).abs() < 1e-3, "{found:?}");
     assert!((found[1].error.expect("an error") / before - 1.0).abs() < 1e-3, "{found:?}");
 }
 
-/// In full contact the gap is a residual, which counts as 0. A search must not refine because of it.
+/// In full contact the gap is nothing but a residual, and counts as 0. A search must not refine because of it.
 #[test]
 fn full_contact_has_no_gap() {
     let (m, d) = (16, 1.0);

@@ -1,4 +1,4 @@
-//! AUTO and NORM agree on problems of every kind: 200 random ones.
+//! AUTO and NORM agree on 200 random problems of every kind.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
@@ -14,7 +14,7 @@ fn size(random: &mut Random) -> usize {
     1 + (random.next() * 96.0) as usize
 }
 
-/// Undeformed distances of a kind, with a depth of order 1, and an approach with contact.
+/// The undeformed distances of a kind of surface, with a depth of order 1, and an approach at which there is contact.
 fn distance(kind: usize, grid: &Grid, random: &mut Random) -> (Vec<f64>, f64) {
     let position = |i: usize| {
         let x = ((i % grid.mx) as f64 + 0.5) / grid.mx as f64 - 0.5;
@@ -90,7 +90,7 @@ fn auto_and_norm_agree_on_200_random_problems() {
             assert_eq!(stop, Outcome::Converged, "problem {number}, {method:?}, {:?} on {grid:?}", scene.load);
             (solver, report)
         };
-        // NORM is the reference, with a smaller tolerance: its residual has short waves, to which large errors of p belong.
+        // NORM is the reference. It has a smaller tolerance, because its residual consists of short waves, to which large errors of p belong.
         let (norm, report) = run(&by_approach, Method::Norm, 1e-3 * tolerance);
         let by_force = Scene { load: Load::Force(report.measures.force), ..by_approach.clone() };
         for scene in [&by_approach, &by_force] {
@@ -98,14 +98,14 @@ fn auto_and_norm_agree_on_200_random_problems() {
             let (a, b) = (auto.state(), norm.state());
             let size = b.p.iter().map(|p| p * p).sum::<f64>().sqrt();
             let difference = a.p.iter().zip(&b.p).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-            // The condition number of A on the contact area amplifies the residual. A factor of 10 is allowed.
+            // The condition number of A on the contact area amplifies the residual, for which a factor of 10 is allowed.
             assert!(
                 difference <= 10.0 * tolerance * size.max(f64::MIN_POSITIVE),
                 "problem {number}, {:?} on {grid:?}: p differs by {:e}",
                 scene.load,
                 difference / size
             );
-            // Elements in contact by one method only are on the boundary: pressure and gap are near 0.
+            // Elements that only one method has in contact lie on the boundary of the contact area: their pressure and gap are near 0.
             let (largest, depth) = (b.p.iter().copied().fold(0.0, f64::max), approach.abs());
             for i in (0..grid.len()).filter(|&i| a.contact[i] != b.contact[i]) {
                 let on_boundary = a.p[i].max(b.p[i]) <= 100.0 * tolerance * largest

@@ -1,11 +1,11 @@
-//! The undeformed distance on a finer grid: cubics are reproduced, holes stay holes.
+//! Interpolation of the undeformed distance to a finer grid: cubics are reproduced, and holes stay holes.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::refine;
 
 const INF: f64 = f64::INFINITY;
 
-/// `value(x, y)` at the centres; the corner of the grid is at (0, 0).
+/// `value(x, y)` at the centres of elements; the corner of the grid is at (0, 0).
 fn sampled(grid: &Grid, value: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     let centre = |i: usize, d: f64| (i as f64 + 0.5) * d;
     (0..grid.len()).map(|i| value(centre(i % grid.mx, grid.dx), centre(i / grid.mx, grid.dy))).collect()
@@ -16,7 +16,7 @@ fn finer(grid: &Grid, parts: usize) -> Grid {
     Grid::new(grid.mx * parts, grid.my * parts, grid.dx / d, grid.dy / d).expect("a grid")
 }
 
-/// The largest difference of the refined samples from samples on the finer grid.
+/// The largest difference between refined samples and samples on the finer grid.
 fn error(mx: usize, my: usize, parts: usize, value: impl Fn(f64, f64) -> f64 + Copy) -> f64 {
     let grid = Grid::new(mx, my, 1.0 / mx as f64, 0.7 / my as f64).expect("a grid");
     let refined = refine(&sampled(&grid, value), &grid, (parts, parts), (false, false)).expect("memory");
@@ -24,8 +24,8 @@ fn error(mx: usize, my: usize, parts: usize, value: impl Fn(f64, f64) -> f64 + C
     refined.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-// Round-off: half an element outside the last centre the absolute values of the weights sum to 6 in each direction, and values are of order 1: 36
-// times some units of 1.1e-16.
+// Half an element outside the last centre the absolute values of the weights add up to 6 in each direction. Values are of order 1, so that the
+// round-off is 36 times some units of 1.1e-16.
 const ROUND_OFF: f64 = 2e-14;
 
 #[test]
@@ -40,15 +40,15 @@ fn polynomials_up_to_the_number_of_centres_are_reproduced() {
     assert!(error(7, 5, 4, |x, _| x.powi(4)) > 1e-5);
 }
 
-/// Slopes that jump have infinite pressures. The largest steps of the slopes, relative to those of a parabola, fall with the number of parts of an
-/// element.
+/// Where slopes of the surface jump, pressures are infinite. So the largest steps of the slopes, relative to those of a parabola, must fall with the
+/// number of parts of an element.
 #[test]
 fn slopes_do_not_jump_between_the_elements() {
     let grid = Grid::new(12, 1, 1.0, 1.0).expect("a grid");
     let h: Vec<f64> = (0..12).map(|i| (0.754_877_666_246_69 * (i * i) as f64).fract()).collect();
     let largest = |parts: usize, period: bool| {
         let fine = refine(&h, &grid, (parts, 1), (period, false)).expect("memory");
-        // Beyond the outermost centres a surface without a period keeps its height.
+        // A surface without a period keeps its height beyond the outermost centres.
         let inside = &fine[parts / 2..fine.len() - parts / 2];
         let bends = inside.windows(3).map(|h| (h[0] - 2.0 * h[1] + h[2]).abs());
         bends.fold(0.0, f64::max) * parts as f64
@@ -92,7 +92,7 @@ fn an_element_alone_is_flat_and_so_are_the_outer_halves_of_two() {
     assert_eq!(finite(&h), [0.75, 1.0, 1.5, 1.75, 0.75, 1.0, 1.5, 1.75]);
 }
 
-/// The values of a grid, moved by some elements with periodic wrapping.
+/// The values of a grid, moved by (x, y) elements around the periods.
 fn rolled(values: &[f64], grid: &Grid, (x, y): (usize, usize)) -> Vec<f64> {
     let of = |i: usize| values[grid.index((i % grid.mx + x) % grid.mx, (i / grid.mx + y) % grid.my)];
     (0..grid.len()).map(of).collect()
@@ -115,7 +115,7 @@ fn one_period_is_refined_alike_wherever_it_begins() {
     }
 }
 
-/// A linear extrapolation of rough heights beside a hole exceeds their range by half a step. It must not carry the load.
+/// Beside a hole a linear extrapolation of rough heights would exceed their range by half a step. Such a point must not carry the load.
 #[test]
 fn rough_heights_beside_holes_stay_near_the_heights() {
     let grid = Grid::new(24, 20, 1.0, 1.0).expect("a grid");
@@ -126,11 +126,13 @@ fn rough_heights_beside_holes_stay_near_the_heights() {
     }
     let refined = refine(&h, &grid, (8, 8), (true, true)).expect("memory");
     let lowest = |of: &[f64]| of.iter().copied().fold(INF, f64::min);
-    // Extrapolation by lines would reach -0.69. Four smooth heights are extrapolated, and cubics exceed the range between heights: -0.2.
+    // Extrapolation by lines would reach -0.69. Four smooth heights are extrapolated, too, and cubics exceed the range of the heights between them:
+    // -0.2 in all.
     assert!(lowest(&refined) > lowest(&h) - 0.35, "{} and {}", lowest(&refined), lowest(&h));
 }
 
-/// A plateau beside a step and a pit of one element: cubics rose above it by 7 % of the depth, and this lip carried the load.
+/// A plateau beside a step, and one with a pit of one element. Plain cubics would rise above the plateau by 7 % of the depth, and this lip would
+/// carry the load.
 #[test]
 fn plateaus_beside_steps_and_pits_have_no_lips() {
     let grid = Grid::new(24, 16, 1.0, 1.0).expect("a grid");
@@ -143,11 +145,11 @@ fn plateaus_beside_steps_and_pits_have_no_lips() {
     }
 }
 
-/// A cubic extrapolation of rough heights is far outside their range half an element beyond the last one, and would carry the load.
+/// Half an element beyond the last centre a cubic extrapolation of rough heights is far outside their range, and would carry the load.
 #[test]
 fn the_ends_of_a_rough_surface_stay_near_its_heights() {
     let grid = Grid::new(16, 12, 1.0, 1.0).expect("a grid");
-    // Heights of 0 to 1 without order: the fractional parts of multiples of an irrational number.
+    // Heights from 0 to 1 without order: the fractional parts of multiples of an irrational number.
     let h: Vec<f64> = (0..grid.len()).map(|i| (0.754_877_666_246_69 * (i * i) as f64).fract()).collect();
     let refined = refine(&h, &grid, (8, 8), (false, false)).expect("memory");
     let fine = finer(&grid, 8);
@@ -157,6 +159,6 @@ fn the_ends_of_a_rough_surface_stay_near_its_heights() {
     };
     let (inside, ends): (Vec<usize>, Vec<usize>) = (0..fine.len()).partition(|i| !at_end(*i));
     let lowest = |of: &[usize]| of.iter().map(|i| refined[*i]).fold(INF, f64::min);
-    // Four smooth heights are extrapolated by half of their last step. Cubic extrapolation would reach -2.3.
+    // If the last four heights are smooth, they are extrapolated by half of their last step, hence the 0.5. Cubic extrapolation would reach -2.3.
     assert!(lowest(&ends) > lowest(&inside) - 0.5, "{} and {}", lowest(&ends), lowest(&inside));
 }

@@ -1,7 +1,7 @@
-//! A coarser grid may be refused although the scene's is not: quantities, searches, price lists and bills begin without it.
+//! A coarser grid may be refused although the scene's grid is not. Quantities, searches, price lists and bills then begin without it.
 //!
-//! Columns of one element each are four elements apart. An element of the grid with half the elements contains at most one of them, too few for a
-//! surface, so that no element can carry the force there.
+//! The surface consists of columns of one element each, four elements apart. On the grid with half the elements in each direction an element contains
+//! at most one column, too little to count as a surface, so that no element can carry the force there.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Each, Friction, Layer, Load, Motion, Prescribed, Scene};
@@ -42,7 +42,7 @@ fn quantities_have_the_rows_of_the_scene() {
 
     let (solver, _, report) = solve(&scene, &Options::default()).expect("a solvable scene");
     assert_eq!(rows[2].value, Some(report.measures.approach));
-    // All columns touch, with displacements equal to the approach: by the direct sum, to the tolerance of 1e-6.
+    // All columns touch, so that their displacements equal the approach: by direct sums, to the tolerance of 1e-6.
     let mut u = vec![0.0; grid.len()];
     dense::apply(solver.influence(), &grid, &solver.state().p, &mut u);
     for i in (0..grid.len()).filter(|i| h[*i] == 0.0) {
@@ -54,7 +54,7 @@ fn quantities_have_the_rows_of_the_scene() {
 fn searches_and_price_lists_begin_with_the_grid_of_the_scene() {
     let (grid, h) = columns();
     let scene = Scene::new(grid, &h, BODIES, Load::Force(FORCE));
-    // The stiffness needs coarser grids for its error.
+    // The error of the stiffness is estimated from coarser grids.
     let quantity = Quantity::Stiffness;
     let accuracy = Accuracy { max_elements: 4 * grid.len() as u64, ..Accuracy::new(0.5).with(quantity, 0.5) };
     let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, None, None).expect("a solvable scene");
@@ -77,7 +77,7 @@ fn a_bill_is_that_of_the_grid_of_the_scene() {
     assert!(rows[0].value.is_some_and(|value| value > 0.0), "{rows:?}");
 }
 
-/// Arrays that only a law of friction reads fit one grid. Without a law they are not read, so that many grids are solved.
+/// Arrays that only a friction law reads fit one grid only. Without a law they are not read, so that several grids can be solved.
 #[test]
 fn what_a_law_would_read_is_not_in_the_way_without_one() {
     let grid = Grid::new(16, 16, 0.1, 0.1).expect("a grid");
@@ -99,7 +99,7 @@ fn what_a_law_would_read_is_not_in_the_way_without_one() {
     assert_eq!(found.stop, Outcome::Converged, "{}", found.reason);
 }
 
-/// The price list reaches the scene's grid, however long the refused coarser grids take.
+/// The price list reaches the scene's grid, however much time the refused coarser grids take.
 #[test]
 fn a_price_list_comes_to_the_grid_of_the_scene_on_a_slow_machine() {
     let scene_grid = Grid::new(M, M, 0.05, 0.05).expect("a grid");

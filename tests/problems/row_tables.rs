@@ -1,5 +1,5 @@
-//! Effect `row_tables`: the half-space's tables are no effect, products equal direct sums, tables with scaled rows have the solution of plain ones,
-//! and the conditions hold with the direct sum, symmetric or not.
+//! Effect `row_tables`: row tables of the half-space's coefficients have no effect, products equal direct sums, tables with scaled rows have the
+//! solution of plain ones, and the contact conditions hold by direct sums, whether tables are symmetric or not.
 
 use crate::support::run;
 use contact_normal::grid::Grid;
@@ -11,7 +11,7 @@ use contact_normal::threads::Threads;
 
 const BODIES: Bodies = Bodies { shear_modulus: [1.0, 1.0], poisson_ratio: [0.3, 0.3] };
 
-/// Tables of `coefficient(jy, iy, kx)`; offset -mx is never read.
+/// Row tables of `coefficient(jy, iy, kx)`. The library never reads the offset -mx.
 fn tables(grid: &Grid, coefficient: impl Fn(usize, usize, i64) -> f64) -> RowTables {
     let (mx, my) = (grid.mx as i64, grid.my);
     let value = |jy, iy, kx| if kx == -mx { f64::NAN } else { coefficient(jy, iy, kx) };
@@ -32,7 +32,7 @@ fn random(i: u64) -> f64 {
     ((x ^ (x >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// `u = A p` term by term, and the sum of the absolute values of the terms.
+/// `u = A p` by direct sums, and the largest sum of the absolute values of the terms.
 fn direct(grid: &Grid, tables: &RowTables, p: &[f64]) -> (Vec<f64>, f64) {
     let (mut u, mut largest) = (vec![0.0; grid.len()], 0.0_f64);
     for (i, u) in u.iter_mut().enumerate() {
@@ -58,11 +58,11 @@ fn tight(method: Method) -> Options {
     Options { method, tolerance: 1e-10, ..Options::default() }
 }
 
-/// The contact conditions from the returned arrays, with the direct sum; `give` is the compliance of a layer.
+/// Asserts the contact conditions of the returned arrays, with u by direct sums. `give` is the compliance of a layer.
 fn assert_conditions(scene: &Scene<'_>, solver: &Solver, give: impl Fn(usize) -> f64, what: &str) {
     let (state, h) = (solver.state(), scene.undeformed_distance);
     let (u, _) = direct(&scene.grid, scene.row_tables.as_ref().unwrap(), &state.p);
-    // One of some 300 elements in contact may have all of the residual of 1e-10.
+    // The residual of 1e-10 is an rms over some 300 elements in contact, of which one may have all of it: a factor of about 20.
     let allowed = 20.0 * 1e-10 * u.iter().copied().fold(0.0, f64::max);
     let mut counts = [0, 0];
     for i in (0..h.len()).filter(|&i| h[i].is_finite()) {
@@ -101,7 +101,7 @@ fn products_are_those_of_the_direct_sum() {
                     let mut u = vec![f64::NAN; grid.len()];
                     operator.apply(&p, &mut u, &mut operator.workspace().unwrap());
                     for (u, expected) in u.iter().zip(&expected) {
-                        // Transforms of 63 and sums of 64 terms: some ten units of round-off of the magnitudes.
+                        // Transforms of 63 values and sums of 64 terms have some ten units of round-off of the magnitudes.
                         assert!((u - expected).abs() <= 1e-13 * magnitudes, "{mx} x {my} {even}: {u} {expected}");
                     }
                     let mut in_place = p.clone();
@@ -144,13 +144,14 @@ fn tables_of_the_half_space_are_no_effect() {
                 let (expected, without) = run(&plain, &tight(method));
                 let (found, with) = run(&scene, &tight(method));
                 for (a, b) in found.state().p.iter().zip(&expected.state().p) {
-                    // Relative residuals of 1e-10, condition numbers of some 100.
+                    // Relative residuals of 1e-10 and condition numbers of some 100.
                     assert!((a - b).abs() <= 1e-7 * without.measures.max_pressure, "{load:?} {method:?}: {a} {b}");
                 }
                 assert_eq!(found.state().contact, expected.state().contact, "{load:?} {method:?}");
                 assert_eq!(found.state().at_limit, expected.state().at_limit, "{load:?} {method:?}");
                 assert!(pressure_limit.is_none() || found.state().at_limit.contains(&true));
-                // Coarse coefficients are means, not those of larger elements, and there is no window and no direct solve.
+                // The coefficients of coarse grids are means instead of those of larger elements, and there is no window and no direct solve. So row
+                // tables may take more products.
                 let (with, without) = (with.count.matrix_products, without.count.matrix_products);
                 assert!(with <= without + without / 2 + 3, "{load:?} {layer:?} {method:?}: {with} products, {without}");
             }
@@ -158,7 +159,7 @@ fn tables_of_the_half_space_are_no_effect() {
     }
 }
 
-/// `c_jy(iy, k) = d(jy) d(iy) c(k, iy - jy)`, and h - approach times d: then e is multiplied by d, and p is divided by d.
+/// `c_jy(iy, k) = d(jy) d(iy) c(k, iy - jy)`, and h - approach is multiplied by d: then e is multiplied by d, and p is divided by d.
 #[test]
 fn rows_in_other_units_have_the_same_solution() {
     // Without row tables this scene is solved on a window around the contact area.
@@ -176,14 +177,15 @@ fn rows_in_other_units_have_the_same_solution() {
         let (found, _) = run(&scene, &tight(method));
         assert_eq!(found.state().contact, expected.state().contact);
         for (i, (a, b)) in found.state().p.iter().zip(&expected.state().p).enumerate() {
-            // The tolerance above, with d between 0.2 and 1.8.
+            // As above 1e-7, times a factor because d is between 0.2 and 1.8.
             assert!((a * d(i / grid.mx) - b).abs() <= 1e-6 * largest, "{method:?} {i}: {a} {b}");
         }
         assert_conditions(&scene, &found, |_| 0.0, "rows in other units");
     }
 }
 
-/// Normals that rotate along y, as for a wheel in a groove: the displacement along one normal by a pressure along another has a factor of the cosine.
+/// Normals that rotate along y, as for a wheel in a groove. A pressure along one normal causes a displacement along another one with a factor of the
+/// cosine between them.
 fn turning(grid: &Grid) -> RowTables {
     let c = half_space(grid);
     let angle = |iy: usize| 1.2 * iy as f64 / grid.my as f64;
@@ -208,7 +210,7 @@ fn the_conditions_hold_with_the_direct_sum() {
                     Some(Layer(Each::PerElement(c))) => c[i],
                 };
                 assert_conditions(&scene, &solver, give, &format!("{load:?} {layer:?} {method:?}"));
-                // Counts are those of the plain scene, or of conjugate gradients without a preconditioner.
+                // The numbers of products are those of the plain scene, or those of conjugate gradients without a preconditioner: at most 60.
                 assert!(
                     method == Method::Norm || report.count.matrix_products <= 60,
                     "{} products",
@@ -224,7 +226,7 @@ fn what_is_not_symmetric_is_solved_too() {
     let grid = Grid::new(22, 19, 0.5, 0.4).unwrap();
     let h = bump(&grid);
     let c = half_space(&grid);
-    // Tables that are even in x or not, with different rows.
+    // Tables that are even in x and tables that are not, with rows that differ.
     let uneven = |jy: usize, iy: usize, kx: i64| c(jy, iy, kx) * (1.0 + 0.02 * iy as f64 + 0.01 * kx as f64);
     let even = |jy: usize, iy: usize, kx: i64| c(jy, iy, kx) * (1.0 + 0.02 * iy as f64);
     for (row_tables, is_even) in [(tables(&grid, uneven), false), (tables(&grid, even), true)] {
@@ -239,7 +241,7 @@ fn what_is_not_symmetric_is_solved_too() {
             assert!(error.to_string().contains("not symmetric"), "{error}");
         }
     }
-    // Symmetric but not even in x: the transposed table is at -k.
+    // Tables that are symmetric but not even in x: the transposed table is at -k.
     let leaning = |jy: usize, iy: usize, kx: i64| c(jy, iy, kx) * (1.0 + 0.002 * (iy as f64 - jy as f64) * kx as f64);
     let row_tables = tables(&grid, leaning);
     assert_eq!((row_tables.is_even_in_x(), row_tables.is_symmetric(&grid)), (false, true));
@@ -250,7 +252,7 @@ fn what_is_not_symmetric_is_solved_too() {
 
 #[test]
 fn coarser_tables_of_the_half_space_are_near_those_of_larger_elements() {
-    // Odd counts: the last row and column stick out.
+    // Odd numbers of elements: the last row and column of the coarse grid stick out of the fine one.
     let grid = Grid::new(13, 11, 1.0, 0.9).unwrap();
     let coarse = Grid::new(7, 6, 2.0, 1.8).unwrap();
     let fine = tables(&grid, half_space(&grid));
@@ -259,8 +261,8 @@ fn coarser_tables_of_the_half_space_are_near_those_of_larger_elements() {
     let exact = half_space(&coarse);
     for (jy, iy, kx) in (0..6 * 6 * 7).map(|k| (k / 42, k / 7 % 6, k as i64 % 7)) {
         let (mean, exact) = (means.coefficient(jy, iy, kx), exact(jy, iy, kx));
-        // For unit squares the potentials at offsets (0, 0), (1, 0), (1, 1), (2, 0) are 3.525, 1.038, 0.73, 0.505. The mean is 6.33 at offset 0,
-        // where 7.05 is exact, and 2.165 at offset 1, where 2.076 is.
+        // For unit squares the coefficients at offsets (0, 0), (1, 0), (1, 1), (2, 0) are 3.525, 1.038, 0.73, 0.505. The mean is 6.33 at offset 0,
+        // where 7.05 is exact, and 2.165 at offset 1, where 2.076 is exact.
         let allowed = if (jy, kx) == (iy, 0) { 0.13 } else { 0.07 };
         assert!((mean / exact - 1.0).abs() <= allowed, "({jy}, {iy}, {kx}): {mean} {exact}");
         assert_eq!(mean, means.coefficient(jy, iy, -kx));
@@ -279,7 +281,7 @@ fn a_fixed_contact_area_and_handles() {
     let fixed = Options { active_set: ActiveSet::Fixed, ..tight(Method::Auto) };
     let mut solver = Solver::new(&scene, &fixed).unwrap();
     let guess = Some(Guess { pressure: &pressure, contact: &contact });
-    // A later scene may name the tables or not, because they belong to the set-up.
+    // A later scene may contain the tables or not, because they belong to the set-up of the handle.
     for scene in [&scene, &plain] {
         let (stop, _) = solver.solve(scene, &fixed, guess, None).unwrap();
         assert_eq!(stop, Outcome::Converged);
@@ -307,6 +309,6 @@ fn reported_bytes_hold_the_tables() {
     let (_, report) = run(&scene, &tight(Method::Auto));
     let (finest, share) = (48 * 48, 8 * 32 + 8 * 32 + 4 * 32);
     assert!(report.bytes >= finest * share, "{} bytes", report.bytes);
-    // A sixth more for coarser grids; the rest of the factor is for arrays of the grid.
+    // Coarser grids take a sixth more. The rest of the factor of 3/2 is for arrays of the grid.
     assert!(report.bytes <= finest * share * 3 / 2, "{} bytes", report.bytes);
 }

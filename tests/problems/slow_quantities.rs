@@ -1,5 +1,5 @@
-//! Errors of quantities that converge slowly, compared with a finer grid: stresses at the surface that overtake those below, forces of steady
-//! rolling.
+//! Estimated errors of quantities that converge slowly, compared with a finer grid: stresses at the surface that grow beyond those below it, and
+//! forces of steady rolling.
 
 use contact_normal::grid::Grid;
 use contact_normal::progress::Progress;
@@ -10,7 +10,7 @@ use contact_normal::solver::{
 
 type Surface = fn(f64, f64) -> f64;
 
-/// Estimates below this part of the error are too low (docs/accuracy.md).
+/// An estimate below this part of the true error counts as too low (docs/accuracy.md).
 const LOW: f64 = 0.3;
 
 fn on(m: usize, surface: Surface) -> (Grid, Vec<f64>) {
@@ -19,7 +19,7 @@ fn on(m: usize, surface: Surface) -> (Grid, Vec<f64>) {
     (grid, (0..grid.len()).map(|i| surface(at(i % m), at(i / m))).collect())
 }
 
-/// The last row of `quantity` on m x m elements, with `coarser` grids.
+/// The row of `quantity` on m x m elements, with its estimate from `coarser` coarser grids.
 fn last(scene: &Scene<'_>, m: usize, surface: Surface, (quantity, coarser): (Quantity, usize)) -> QuantityRow {
     let (grid, h) = on(m, surface);
     let scene = Scene { grid, undeformed_distance: &h, ..scene.clone() };
@@ -69,7 +69,7 @@ fn rolling() -> Friction<'static> {
     Friction { prescribed, motion: Motion::SteadyRolling, spin: 0.01, ..Friction::new(0.3) }
 }
 
-/// The stress at the tip grows as a logarithm: a small last change must not hide this.
+/// The stress at the tip of a cone grows as the logarithm of the number of elements. The small last change must not make the estimate small.
 #[test]
 fn the_tip_of_a_cone() {
     let scene = scene(Bodies::same(0.5, 0.3), Load::Approach(0.03));
@@ -79,8 +79,8 @@ fn the_tip_of_a_cone() {
     }
 }
 
-/// With a pressure limit the stress below the surface has converged to 1e-4. At the trailing edge of the slip another stress grows, which is the
-/// largest with four times the elements.
+/// With a pressure limit the stress below the surface has converged to 1e-4. At the trailing edge of the slip area another stress grows, which is the
+/// largest on the grid with four times the elements.
 #[test]
 fn a_limit_beside_friction() {
     let limit = Some(PressureLimit(Each::Uniform(0.06)));
@@ -93,7 +93,7 @@ fn a_limit_beside_friction() {
     assert!(row.error.is_some(), "{row:?}");
 }
 
-/// Forces of steady rolling of unlike bodies jump from grid to grid.
+/// The forces of steady rolling of unlike bodies jump from grid to grid, which the estimate must cover.
 #[test]
 fn steady_rolling_of_unlike_bodies() {
     let bodies = Bodies { shear_modulus: [0.5, 0.9], poisson_ratio: [0.3, 0.25] };
@@ -105,8 +105,8 @@ fn steady_rolling_of_unlike_bodies() {
     assert!(row.error.is_some(), "{row:?}");
 }
 
-/// The pressure has a peak where the rounded ends begin, and the largest stress is one element below it. On 64 x 64 elements this stress has an error
-/// of 10 % and has changed by 2 %; the peak itself has no estimate there.
+/// The pressure has a peak where the rounded ends begin, and the largest stress lies one element below it. On 64 x 64 elements this stress has
+/// changed by 2 % and has an error of 10 %. The peak itself has no estimate there.
 #[test]
 fn a_search_for_the_stress_below_a_peak_resolves_the_peak() {
     let (target, load) = (0.03, Load::Approach(0.14));
@@ -125,7 +125,7 @@ fn a_search_for_the_stress_below_a_peak_resolves_the_peak() {
     assert!((of(m) - truth).abs() <= target * truth, "{m} elements: {} for {truth}", of(m));
 }
 
-/// A ball in full slip. Elements may stick on finer grids, so that a stick area of 0 has no error and is not exact.
+/// A ball in full slip. Elements may stick on finer grids, so that a stick area of 0 is not known to be exact, and has no error.
 #[test]
 fn a_stick_area_of_zero_is_not_known_to_be_exact() {
     let bowl: Surface = |x, y| 0.5 * (x * x + y * y);
@@ -145,7 +145,7 @@ fn a_stick_area_of_zero_is_not_known_to_be_exact() {
     assert_ne!(found.stop, Outcome::Converged, "{}", found.reason);
 }
 
-/// The solver that a search returns is like any other: for a surface that jumps between its elements it has the errors of a new solve.
+/// The solver that a search returns is like any other: on a surface that jumps between its elements it has the estimates of a new solve.
 #[test]
 fn the_solver_of_a_search_has_the_errors_of_a_new_one() {
     let (grid, h) = on(32, ellipse);
@@ -163,7 +163,7 @@ fn the_solver_of_a_search_has_the_errors_of_a_new_one() {
     assert!(new.error.force > Some(0.0) && again.error.force == new.error.force, "{:?} {:?}", again.error, new.error);
 }
 
-/// A roller that ends at |y| = 0.38, at any place between the elements, with its pressures at their limit near the ends.
+/// A roller that ends at |y| = 0.38, somewhere between the elements, with pressures at their limit near the ends.
 fn ends_at_38(x: f64, y: f64) -> f64 {
     if y.abs() < 0.38 {
         0.5 * x * x
@@ -172,7 +172,7 @@ fn ends_at_38(x: f64, y: f64) -> f64 {
     }
 }
 
-/// Grids may agree by chance on the end of the roller. On 100 x 100 elements it is an edge of elements.
+/// Two grids may agree by chance on the end of the roller. On 100 x 100 elements the end is an edge of elements.
 #[test]
 fn a_limit_beside_ends_between_elements() {
     let scene = scene(Bodies::same(1.0, 0.3), Load::Approach(0.04));
@@ -201,8 +201,8 @@ fn a_limit_beside_ends_between_elements() {
     assert!(met >= 5, "{met}");
 }
 
-/// Steps of stresses and of the stiffness are reported after the cycles of their grid, with continuous seconds and counts, and with the residual of
-/// the solve.
+/// The progress of stresses and of the stiffness is reported after the cycles of their grid, with seconds and counts that continue, and with the
+/// residual of the solve.
 #[test]
 fn steps_of_values_are_told_after_cycles() {
     let (grid, h) = on(24, ellipse);

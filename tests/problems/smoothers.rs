@@ -1,4 +1,4 @@
-//! A fast Gauss-Seidel sweep has the iterates of the dense one, term by term.
+//! The library's fast Gauss-Seidel sweep has the iterates of the sweep by its formula, term by term.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace, Table};
@@ -29,7 +29,7 @@ fn influences(grid: &Grid, random: &mut Random) -> [Coefficients; 2] {
     ]
 }
 
-/// Sizes below and above one strip of 16 rows, below and above blocks of strips; sets of all shapes.
+/// Grids below and above one strip of 16 rows, and below and above blocks of strips, with contact areas of all shapes.
 #[test]
 fn a_fast_sweep_is_the_dense_sweep_to_twelve_digits() {
     let mut random = Random(5);

@@ -1,4 +1,4 @@
-//! Special functions beside published tables.
+//! Special functions compared with published tables.
 
 use contact_normal::influence::special::hurwitz_zeta;
 

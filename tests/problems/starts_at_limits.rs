@@ -1,4 +1,5 @@
-//! Starts with elements at their pressure limit: they stay there, so that a solution needs no cycles, and cut solves continue.
+//! Initial guesses with elements at their pressure limit. These elements begin at their limit, so that a solution needs no cycles, and solves that
+//! were cut short continue.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Each, Load, PressureLimit, Scene};
@@ -16,7 +17,7 @@ fn bumpy() -> (Grid, Vec<f64>) {
     (grid, (0..grid.len()).map(of).collect())
 }
 
-/// Visits the scenes: by approach and by force, with limits of a half and four fifths of the largest pressure.
+/// Calls `visit` with each scene: by approach and by force, with limits of a half and of four fifths of the largest pressure.
 fn each(visit: impl Fn(&Scene<'_>, &str)) {
     let (grid, h) = bumpy();
     let scene = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.05));
@@ -40,7 +41,7 @@ fn a_solution_is_one_at_once() {
             let (pressure, contact) = (solved.state().p.clone(), solved.state().contact.clone());
             assert!(solved.state().at_limit.iter().filter(|at_limit| **at_limit).count() > 10, "{what}");
             let inside: Vec<bool> = pressure.iter().map(|p| *p > 0.0).collect();
-            // The area of C callers, in which elements at their limit are in contact, and that of the state.
+            // Two contact areas for the guess: that of C callers, in which elements at their limit are in contact, and that of the state.
             for contact in [&inside, &contact] {
                 let options = Options { tolerance: 1e-6, initial_guess: InitialGuess::Given, ..tight };
                 let mut solver = Solver::new(scene, &options).expect("a solver");
@@ -58,7 +59,7 @@ fn a_solution_is_one_at_once() {
     });
 }
 
-/// Solves that are cut by few cycles continue from their results, and converge.
+/// Solves that were cut short after few cycles continue from their results, and converge.
 #[test]
 fn solves_that_are_cut_go_on() {
     each(|scene, what| {

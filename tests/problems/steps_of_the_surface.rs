@@ -1,4 +1,4 @@
-//! Steps of the undeformed distance: pressures beside them are singular. The beginning of a period is no step.
+//! Steps of the undeformed distance, beside which pressures are singular. The beginning of a period is no step.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, Options, Outcom
 
 const BODIES: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
 
-/// A ball of radius 10 on m x m elements, lower by `deep` beyond `edge`.
+/// A ball of radius 10 on m x m elements, which is lower by `deep` beyond `edge`.
 fn ball(m: usize, edge: f64, deep: f64) -> (Grid, Vec<f64>) {
     let d = 6.0 / m as f64;
     let at = |k: usize| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
@@ -28,7 +28,8 @@ fn largest((grid, h): &(Grid, Vec<f64>)) -> (Option<f64>, f64) {
     (report.error.max_pressure, report.measures.max_pressure)
 }
 
-/// The peak in the middle of the ball must not have an estimate, because pressures at the edge grow without bound on finer grids.
+/// The largest pressure on these grids is in the middle of the ball. It must not have an estimate, because pressures at the step grow without bound
+/// on finer grids.
 #[test]
 fn the_largest_pressure_has_no_estimate_where_contact_ends_at_a_step() {
     for edge in [1.1, 1.15, 1.2, 1.25] {
@@ -37,7 +38,7 @@ fn the_largest_pressure_has_no_estimate_where_contact_ends_at_a_step() {
             assert_eq!(error, None, "edge {edge}, {deep} deep: of {pressure}");
         }
     }
-    // The contact radius is 1.6: a step outside changes nothing.
+    // The contact radius is 1.6. A step outside the contact changes nothing.
     let [plain, outside] = [10.0, 2.0].map(|edge| largest(&ball(32, edge, 0.05)).0.expect("an estimate"));
     assert!((outside / plain - 1.0).abs() < 0.1, "{outside} for {plain}");
 }
@@ -64,14 +65,14 @@ fn a_search_does_not_depend_on_where_a_period_begins() {
     for by in [(6, 0), (0, 5), (5, 3)] {
         let (others, other_approach, other_pressure) = searched(by);
         assert_eq!(others, elements, "{by:?}");
-        // The tolerance of these solves is at most 1e-4 of the pressures.
+        // The solves of the search have a tolerance of at most 1e-4 of the pressures.
         assert!((other_approach - approach).abs() < 1e-4 * 0.01, "{by:?}: {other_approach} for {approach}");
         assert!((other_pressure / pressure - 1.0).abs() < 1e-3, "{by:?}: {other_pressure} for {pressure}");
     }
 }
 
-/// A search of an array with a step ends where the estimate covers the change to finer grids. Without jumps in the estimate of the array's own grid it ended
-/// there, and missed a target of 3 % by three times.
+/// A search from an array with a step ends only where the estimate covers the change to finer grids. If the estimate on the array's own grid did not
+/// include jumps, the search would end there, and miss a target of 3 % by a factor of three.
 #[test]
 fn a_search_of_an_array_with_a_step_keeps_its_target() {
     let m = 32;

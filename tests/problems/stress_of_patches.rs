@@ -1,4 +1,4 @@
-//! Stresses below contact patches that are coupled by factors: each element belongs to a patch, as for the pressures.
+//! Stresses below contact patches that are coupled by factors. Each element belongs to one patch, as for the pressures.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -16,7 +16,7 @@ fn body() -> Body {
     Body { grid: Grid::new(14, 9, 1.0, 0.7).unwrap(), poisson_ratio: 0.3, periodic: false }
 }
 
-/// Three patches in oblique stripes, the second in two pieces, and elements of no patch.
+/// The patch of each element: three patches in oblique stripes, of which the second has two pieces, and elements of no patch.
 fn patch(grid: &Grid) -> Vec<i32> {
     let of = |i: usize| [0, 1, 2, -1, 1][(i % grid.mx + i / grid.mx) / 5];
     (0..grid.len()).map(of).collect()
@@ -41,8 +41,8 @@ fn at_depths(loads: &Loads<'_>, depths: &[f64]) -> Vec<Vec<Tensor>> {
     found
 }
 
-/// By definition, the stress below an element or at a point is the sum over patches of the factor times the stress by the loads of that patch alone. Below
-/// elements of no patch all loads count in full, and so do loads on these elements everywhere.
+/// By definition, the stress below an element or at a point is a sum over patches: the factor times the stress by the loads of that patch alone.
+/// Below elements of no patch all loads have the factor 1. Loads on such elements have the factor 1 everywhere.
 #[test]
 fn each_patch_has_its_own_sum() {
     let (grid, mut random) = (body().grid, Random(7));
@@ -77,7 +77,7 @@ fn each_patch_has_its_own_sum() {
                 depths.map(|z| at(loads, &(0..grid.len()).map(|i| centre(i, z)).collect::<Vec<_>>()).unwrap());
             for found in [at_depths(loads, &depths), by_points.to_vec()] {
                 let pairs = found.iter().flatten().flatten().zip(expected.iter().flatten().flatten());
-                // Sums of some hundred loads of about 1, by FFT.
+                // The round-off of sums of some hundred loads of about 1, by FFT.
                 assert!(pairs.clone().all(|(a, b)| (a - b).abs() <= 1e-13), "{which:?}");
                 assert!(pairs.count() == 4 * 6 * grid.len());
             }

@@ -10,7 +10,7 @@ const M: usize = 40;
 fn stress((dx, dy): (f64, f64), point: [f64; 3]) -> Result<Tensor, Error> {
     let body = Body { grid: Grid::new(M, M / 2, dx, dy).unwrap(), poisson_ratio: 0.3, periodic: false };
     let q: Vec<f64> = (0..body.grid.len()).map(|i| 1.0 + (i % 7) as f64).collect();
-    // Edges are counted from the outer corner of element (0, 0), points from the middle of the grid.
+    // The test's coordinates begin at the outer corner of element (0, 0), those of the library in the middle of the grid.
     let point = [point[0] - 0.5 * M as f64 * dx, point[1] - 0.25 * M as f64 * dy, point[2]];
     let mut out = [[0.0; 6]];
     let loads = Loads { traction_x: Some(&q), ..Loads::pressure(&q) };
@@ -24,7 +24,7 @@ fn assert_refused(sizes: (f64, f64), point: [f64; 3]) {
     }
 }
 
-/// Ways in which a program may compute the k-th edge.
+/// The coordinate of the k-th edge, computed in several ways that a program may use.
 fn edges(k: usize, d: f64) -> [f64; 7] {
     let (step, far) = (d, 1e3 * M as f64 * d / 7.0);
     let added = (0..k).fold(0.0, |sum, _| sum + step);
@@ -50,7 +50,7 @@ fn edges_and_corners_are_refused_to_within_rounding() {
                     assert_refused(sizes, [x, 3.4 * dy, z]);
                     assert_refused(sizes, [x, edges(5, dy)[1], z]);
                 }
-                // Points within an element, below the surface, and outside the grid have a value.
+                // Points within an element, below the surface, and outside the grid are accepted.
                 for point in
                     [[x + 0.5 * dx, 3.4 * dy, 0.0], [x, 3.4 * dy, 1e-3 * dx], [x, -0.4 * dy, 0.0], [x, 40.3 * dy, 0.0]]
                 {
@@ -66,7 +66,7 @@ fn edges_and_corners_are_refused_to_within_rounding() {
         for k in [0, 1, 3, 11, 19, 20] {
             edges(k, dy).into_iter().for_each(|y| assert_refused(sizes, [4.7 * dx, y, 0.0]));
         }
-        // A point a millionth of an element off an edge is not on it.
+        // A point that is a millionth of an element off an edge is not on the edge.
         assert!(stress(sizes, [3.000001 * dx, 3.4 * dy, 0.0]).is_ok());
     }
 }

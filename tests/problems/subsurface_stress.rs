@@ -1,4 +1,5 @@
-//! Stresses below the surface: against direct sums, closed forms of elasticity, equilibrium, and the exact stresses under a ball.
+//! Stresses below the surface, compared with direct sums, with closed forms of elasticity, with equilibrium, and with the exact stresses under a
+//! ball.
 
 use std::f64::consts::PI;
 
@@ -14,7 +15,7 @@ const ALL: Wanted =
 const TENSOR: Wanted =
     Wanted { components: [true; 6], von_mises: false, maximum_shear: false, principal: false, directions: false };
 
-/// Numbers in [-1, 1], the same each time.
+/// Pseudo-random numbers in [-1, 1], the same each time.
 fn noise(seed: u64, n: usize) -> Vec<f64> {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     (0..n)
@@ -56,7 +57,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |l: f64, v| l.max(v.abs()))
 }
 
-/// Products by FFT equal direct sums: random loads on many grids, also slender ones and a single element.
+/// Products by FFT equal direct sums, for random loads on many grids, also slender ones and a single element.
 #[test]
 fn products_are_direct_sums() {
     let depths = [0.0, 1e-12, 0.3, 2.0, 17.0, 1e6];
@@ -72,7 +73,7 @@ fn products_are_direct_sums() {
             for (i, exact) in at(&body, &loads, &points).iter().enumerate() {
                 for (found, exact) in tensor(depth, i).iter().zip(exact) {
                     let error = (found - exact).abs();
-                    // Loads are at most 1. The kernels of both sums differ only far away, where they are small, by 1e-12 of their largest value.
+                    // Loads are at most 1. Only far away, where kernels are small, those of both sums differ, by 1e-12 of their largest value.
                     assert!(error <= 1e-13, "{mx} x {my}, z {z}, element {i}: {error:e}");
                 }
             }
@@ -80,7 +81,7 @@ fn products_are_direct_sums() {
     }
 }
 
-/// Products by FFT equal direct sums at some of the elements in hard cases: a long strip, one element, nu = 1/2, depths from 0 to a million
+/// Products by FFT equal direct sums at some of the elements, in hard cases: a long strip, one element, nu = 1/2, and depths from 0 to a million
 /// elements.
 #[test]
 fn hard_cases_are_direct_sums() {
@@ -117,7 +118,7 @@ fn at_the_surface_stresses_are_the_loads() {
     }
 }
 
-/// Love (1929): on the axis of a rectangle; and plane strain under a long strip (Johnson, section 2.5).
+/// Closed forms: on the axis of a rectangle (Love 1929), and plane strain under a long strip (Johnson, section 2.5).
 #[test]
 fn a_rectangle_and_a_strip_have_their_closed_forms() {
     let (a, b) = (1.5, 0.5);
@@ -128,7 +129,7 @@ fn a_rectangle_and_a_strip_have_their_closed_forms() {
         let sum = (a * b / (z * r)).atan() + a * b * z / r * (1.0 / (a * a + z * z) + 1.0 / (b * b + z * z));
         assert!((found[2] + 2.0 / PI * sum).abs() <= 2e-14, "z {z}: {}", found[2]);
     }
-    // Half-width 1, length 2e4: by angles, and corrections of about 1/length.
+    // A strip of half-width 1 and length 2e4. The closed form is in terms of angles; the ends change it by about 1/length.
     let strip = body(1, 1, 2.0, 2e4, 0.3);
     for (x, z) in [(0.0, 1.0), (0.7, 0.5), (1.4, 0.3)] {
         let [xx, yy, zz, ..] = at(&strip, &Loads::pressure(&[1.0]), &[[x + 1.0, 1e4, z]])[0];
@@ -156,7 +157,7 @@ fn stresses_are_in_equilibrium() {
         let places: Vec<_> = (0..3).flat_map(|axis| [moved(axis, step), moved(axis, -step)]).collect();
         let found = at(&body, &loads, &places);
         let slope = |axis: usize, c: usize| (found[2 * axis][c] - found[2 * axis + 1][c]) / (2.0 * step);
-        // xx xy xz, xy yy yz, xz yz zz
+        // The components of the rows of the tensor: xx xy xz, xy yy yz, xz yz zz.
         for row in [[0, 3, 4], [3, 1, 5], [4, 5, 2]] {
             let sum: f64 = row.into_iter().enumerate().map(|(axis, c)| slope(axis, c)).sum();
             assert!(sum.abs() <= 2e-5, "{point:?}: {sum:e}");
@@ -164,9 +165,9 @@ fn stresses_are_in_equilibrium() {
     }
 }
 
-/// The force on the surface passes through the plane at each depth. Kernels are even, so the sum of a stress over a window of elements under one
-/// loaded element equals the stress in the middle under a load on the whole window. For pressures this is Love's closed form (1929), for
-/// tractions that of `V_z - z V_xx`. The rest of the force passes through the plane outside the window.
+/// The force on the surface passes through the plane at each depth. Kernels are even. So the sum of a stress over a window of elements below one
+/// loaded element equals the stress below the middle of a load on the whole window. For pressures this is Love's closed form (1929), for tractions
+/// that of `V_z - z V_xx`. The rest of the force passes through the plane outside the window.
 #[test]
 fn forces_pass_through_each_depth() {
     let m = 121;
@@ -185,12 +186,12 @@ fn forces_pass_through_each_depth() {
             // The error of a kernel is 1e-12 of the largest component at its place. The largest components add up to about 3.
             assert!((found - exact).abs() <= 1e-11, "z {z}: {found} for {exact}");
         }
-        // sxy is odd in x or in y for each load, so its sum vanishes.
+        // sxy is odd in x or in y for each load, so that its sum is 0.
         assert!(depth.stress[3].iter().sum::<f64>().abs() <= 1e-11);
     }
 }
 
-/// The Hertz pressures of a ball, sqrt(1 - (r/a)^2) at the centres of elements: a = 1 is n elements, with `more` elements outside.
+/// The Hertz pressures of a ball, sqrt(1 - (r/a)^2) at the centres of elements. The radius a = 1 has n elements, with `more` elements outside.
 fn ball(n: usize, more: usize) -> (Body, Vec<f64>) {
     let m = 2 * (n + more) + 1;
     let d = 1.0 / n as f64;
@@ -202,7 +203,7 @@ fn ball(n: usize, more: usize) -> (Body, Vec<f64>) {
 
 #[test]
 fn under_a_ball_are_the_stresses_of_hertz() {
-    // The largest error is of second order in dx/a: 1.4e-4 p0 for dx = a/32. The shear at .48 a is 0.310020 (Johnson, eq. 3.45 and 4.24).
+    // The largest error is of second order in dx/a, 1.4e-4 p0 for dx = a/32. The shear at .48 a is 0.310020 (Johnson, eq. 3.45 and 4.24).
     for (n, tolerance, of_shear) in [(16, 6e-4, 2e-4), (32, 2e-4, 5e-5)] {
         let (body, pressure) = ball(n, 0);
         let depths: Vec<f64> = (1..=100).map(|k| 0.02 * k as f64).collect();
@@ -221,8 +222,8 @@ fn under_a_ball_are_the_stresses_of_hertz() {
     }
 }
 
-/// The largest shear is .3100205 p0 at .480864 a (from the closed form on the axis). The depths are .001 a apart. The depth found is at most
-/// two of these off.
+/// The largest shear is .3100205 p0 at .480864 a (from the closed form on the axis). The depths are .001 a apart, and the depth that is found is off
+/// by at most two of these.
 #[test]
 fn the_largest_shear_under_a_ball_is_at_its_depth() {
     let (body, pressure) = ball(32, 0);
@@ -243,7 +244,8 @@ fn the_largest_shear_under_a_ball_is_at_its_depth() {
     assert_eq!((ix, iy), (32, 32));
 }
 
-/// The reference is a polar quadrature of point forces over the disc, without a grid: von Mises maximum .647593 p0 at x = .2703 a, z = .4441 a.
+/// The reference is a polar quadrature of point forces over the disc, without a grid: the largest von Mises stress is .647593 p0 at x = .2703 a, z =
+/// .4441 a.
 #[test]
 fn a_sliding_ball_yields_first_where_it_should() {
     let n = 32;
@@ -398,7 +400,8 @@ fn progress_counts_depths_and_cancels() {
     assert_eq!((done, told, kept), (Ok(false), vec![1, 2], 2));
 }
 
-/// The stresses xx, yy, zz, xz by a pressure and by a traction that are constant on each element and vary in x alone: a sum of waves, term by term.
+/// The stresses xx, yy, zz and xz by a pressure and by a traction, both constant on each element and varying in x alone: a sum of waves, term by
+/// term.
 fn waves(load: &[f64], d: f64, nu: f64, i: usize, z: f64) -> [[f64; 4]; 2] {
     let m = load.len();
     let mean = load.iter().sum::<f64>() / m as f64;
@@ -435,13 +438,14 @@ fn a_periodic_load_is_a_sum_of_waves() {
     let mean = load.iter().sum::<f64>() / m as f64;
     for (k, z) in depths.into_iter().enumerate() {
         for (i, p) in everywhere.iter().enumerate() {
-            // Exactly at the surface: szz = -p, sxz = -q, and without the mean of p sxx = -p, syy = -2 nu p.
+            // At the surface szz = -p and sxz = -q, and without the mean of p sxx = -p and syy = -2 nu p.
             let sideways = -nu / (1.0 - nu) * mean;
             let surface = [sideways - (p - mean), sideways - 2.0 * nu * (p - mean), -p, 0.0];
             let exact = if z > 0.0 { waves(&load, d, nu, i % m, z) } else { [surface, [f64::NAN, f64::NAN, 0.0, -p]] };
             for (found, exact) in [&pressed[k], &sheared[k]].into_iter().zip(exact) {
                 for (c, exact) in [0, 1, 2, 4].into_iter().zip(exact).filter(|(_, exact)| !exact.is_nan()) {
-                    // Near the surface kernels are tenth differences: round-off times weights of up to 252, and the images that are left out.
+                    // Near the surface kernels are tenth differences. Their error is round-off times weights of up to 252, and that of the images
+                    // that are left out.
                     let found = found.stress[c][i];
                     assert!((found - exact).abs() <= 1e-11, "z {z}, element {i}, component {c}: {found} for {exact}");
                 }
@@ -451,9 +455,9 @@ fn a_periodic_load_is_a_sum_of_waves() {
     }
 }
 
-/// Loads in two dimensions have the same stresses on a grid of elements a third as long. At depths between the sides of both elements, the
-/// fine grid sums waves and the coarse one takes tenth differences. Odd and even numbers of elements, slender ones, more bins than a lane has, and
-/// depths at which most or all waves have faded.
+/// Loads in two dimensions have the same stresses on a grid whose elements are a third as long. At depths between the sides of both elements the fine
+/// grid sums waves and the coarse one takes tenth differences. The cases have odd and even numbers of elements, slender elements, more frequencies
+/// than a lane has, and depths at which most or all waves have decayed.
 #[test]
 fn periodic_stresses_are_those_of_finer_elements() {
     for (mx, my, dx, dy) in [(5, 4, 1.0, 0.8), (31, 16, 0.4, 1.0), (2, 33, 1.0, 0.3), (1, 1, 1.0, 1.0)] {
@@ -470,7 +474,7 @@ fn periodic_stresses_are_those_of_finer_elements() {
         };
         let both = (of(&coarse, &loads, 2), of(&fine, &loads.each_ref().map(refined), 1));
         for (z, (one, other)) in depths.into_iter().zip(both.0.iter().zip(&both.1)) {
-            // Deeper than a side of the coarse element both are sums of waves. Nearer the surface, tenth differences have an error of 1e-12.
+            // Deeper than the side of a coarse element both grids sum waves. Nearer to the surface, tenth differences have an error of 1e-12.
             let tolerance = if z < 1.0 { 1e-11 } else { 1e-14 };
             for i in 0..mx * my {
                 let middle = (3 * (i / mx) + 1) * 3 * mx + 3 * (i % mx) + 1;
@@ -483,7 +487,8 @@ fn periodic_stresses_are_those_of_finer_elements() {
     }
 }
 
-/// A line of elements with two periods has uniform loads along each element. The stresses are those of plane strain, whatever the length of the elements.
+/// On a line of elements with two periods the load is uniform along each element. The stresses are those of plane strain, whatever the length of the
+/// elements.
 #[test]
 fn a_periodic_line_has_the_stresses_of_plane_strain() {
     let (m, d, load) = (24, 0.3, noise(7, 24));
@@ -498,7 +503,7 @@ fn a_periodic_line_has_the_stresses_of_plane_strain() {
             stresses(&Body { periodic: true, ..body(mx, my, dx, dy, 0.3) })
         };
         let square = on(d);
-        // Three equal rows are as good as one.
+        // Three equal rows must have the stresses of one.
         let rows: Vec<f64> = (0..3 * m).map(|i| load[if my == 1 { i % m } else { i / 3 }]).collect();
         let (wide, high) = if my == 1 { (m, 3) } else { (3, m) };
         let three = Body { periodic: true, ..body(wide, high, d, d, 0.3) };
@@ -508,7 +513,7 @@ fn a_periodic_line_has_the_stresses_of_plane_strain() {
             .into_iter()
             .flat_map(|depth| (0..m).map(|i| depth.von_mises[if my == 1 { i } else { 3 * i }]).collect::<Vec<f64>>())
             .collect();
-        // The error of a kernel is 1e-12 (tests above); that of a sum of 24 is below 1e-10.
+        // The error of a kernel is 1e-12 (tests above), and that of a sum of 24 of them is below 1e-10.
         assert!(square.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-10 * largest(&expected)), "{mx} x {my}");
         for long in [1e-4, 1e4] {
             assert!(on(long) == square, "{mx} x {my}, elements {long} long");

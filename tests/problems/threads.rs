@@ -17,7 +17,7 @@ fn found(solver: &Solver, cycles: u64) -> Found {
     (values.map(|value| value.to_bits()).collect(), state.contact.clone(), cycles)
 }
 
-/// The results of a cold solve, and of a next one from it with 1 % more load.
+/// The results of a solve without a guess, and of a next one from its result with 1 % more load.
 fn cold_and_next(scene: &Scene<'_>, options: &Options) -> [Found; 2] {
     let (mut solver, stop, report) = solve(scene, options).expect("a solve");
     assert_eq!(stop, Outcome::Converged, "{options:?}");
@@ -31,7 +31,7 @@ fn cold_and_next(scene: &Scene<'_>, options: &Options) -> [Found; 2] {
     [cold, found(&solver, report.count.cycles)]
 }
 
-/// With approach and force prescribed, all methods, 1 and 3 threads; AUTO also with 2.
+/// Asserts equal bits for a given approach and a given force, for all methods with 1 and 3 threads, and for AUTO also with 2.
 fn same_for_any_number_of_threads(case: &Case) {
     let (solver, _, report) = solve(&case.scene(), &Options::default()).expect("a solve");
     let loads = [Load::Approach(solver.state().approach), Load::Force(report.measures.force)];
@@ -58,7 +58,7 @@ fn same_for_any_number_of_threads(case: &Case) {
     }
 }
 
-/// With this number of elements passes are shared, also on the window around C.
+/// With this number of elements passes over the elements are shared between threads, also on the window around C.
 #[test]
 fn the_ellipse() {
     same_for_any_number_of_threads(&ellipse(280));

@@ -1,4 +1,5 @@
-//! Viscoelastic bodies compared with closed forms: maps of one step, relaxation, creep under a step of force, Lee and Radok's pressure, Ting's cycle.
+//! Viscoelastic bodies compared with closed forms: the maps of one step, relaxation, creep under a step of force, Lee and Radok's pressure, and
+//! Ting's cycle of loading.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Branches, Load, Scene, Visco};
@@ -20,7 +21,7 @@ fn modulus(t: f64) -> f64 {
     relaxation(G, (&MODULI, &TIMES), t)
 }
 
-/// The creep function of this body, by the roots of the quadratic: `s J = D/P`, `P = Gi D + sum of Gk s (s + 1/tl)`.
+/// The creep function J of this body: `s J = D/P` with `P = Gi D + sum of Gk s (s + 1/tl)`, inverted by the roots of this quadratic.
 fn creep(t: f64) -> f64 {
     let [b0, b1] = TIMES.map(|t| 1.0 / t);
     let rest = G - MODULI[0] - MODULI[1];
@@ -31,13 +32,13 @@ fn creep(t: f64) -> f64 {
     1.0 / G + roots.iter().map(|s| -part(*s) * (s * t).exp_m1()).sum::<f64>()
 }
 
-/// Displacements by a constant w, or w for constant displacements, after these steps.
+/// The last displacement u under a constant w, or, in the form of relaxation, the last w under a constant displacement, after these steps.
 fn held(series: &Series, steps: &[f64], form: Form) -> f64 {
     let (mut q, mut after, mut w0) = (vec![0.0; series.len()], vec![0.0; series.len()], 0.0);
     let mut last = 0.0;
     for (k, dt) in [0.0].iter().chain(steps).enumerate() {
         let map = Map::new(series, *dt, form);
-        // Constant after the first step, which has no duration.
+        // w or u is constant after the first step, which has no duration.
         let w = if form == Form::Creep { 1.0 } else { (1.0 - map.history(&q, w0)) / map.compliance() };
         let u = map.compliance() * w + map.history(&q, w0);
         assert!(k > 0 || (u - 1.0).abs() + (w - 1.0).abs() <= 1e-15);
@@ -73,11 +74,11 @@ fn creep_is_the_inverse_of_relaxation() {
         (1.0, &weak[..13].iter().map(|_| 1.0 / 13.0).collect::<Vec<f64>>(), &many[..13], 30.0),
     ] {
         let series = Series::new(g, moduli, times).expect("a series");
-        // The trapezoidal rule with nodes that are dense at both ends, where the derivatives of the integrand are large.
+        // The trapezoidal rule, with nodes that are dense at both ends, where the derivatives of the integrand are large.
         let (n, mut sum) = (4000, 0.0);
         for i in 1..n {
             let x = i as f64 / n as f64;
-            // s/t = 1/(1 + exp(-2 sinh(pi z))): the double exponential rule.
+            // The substitution s/t = 1/(1 + exp(-2 sinh(pi z))) of the double exponential rule.
             let z = 6.0 * (x - 0.5);
             let (part, late) =
                 (1.0 / (1.0 + (-2.0 * (PI * z).sinh()).exp()), 1.0 / (1.0 + (2.0 * (PI * z).sinh()).exp()));
@@ -101,7 +102,7 @@ fn ball() -> (Grid, Vec<f64>) {
 
 const BODIES: Bodies = Bodies { shear_modulus: [f64::INFINITY, G], poisson_ratio: [0.0, 0.5] };
 
-/// The steps of a history of loads, the first of them at time 0: report and largest pressure of each.
+/// Solves the steps of a history of loads, the first of them at time 0. Returns the report and the largest pressure of each.
 fn history(times: &[f64], load: impl Fn(f64) -> Load, form: Option<Form>) -> Vec<(Report, f64)> {
     let (grid, h) = ball();
     let options = Options { tolerance: 1e-9, ..Options::default() };
@@ -122,7 +123,7 @@ fn history(times: &[f64], load: impl Fn(f64) -> Load, form: Option<Form>) -> Vec
     found
 }
 
-/// The times of steps from 0 to an end.
+/// The times of equal steps from 0 to an end.
 fn times(step: f64, end: f64) -> Vec<f64> {
     (0..=(end / step).round() as usize).map(|k| k as f64 * step).collect()
 }
@@ -136,11 +137,11 @@ fn at_a_constant_approach_the_force_relaxes_as_the_modulus() {
         let found = history(&times, |_| Load::Approach(RADIUS * RADIUS), None);
         for (t, (report, _)) in times.iter().zip(&found) {
             let part = report.measures.force / found[0].0.measures.force;
-            // The tolerance: the force is an integral, whose error is smaller.
+            // The tolerance of the solve is 1e-9. The force is an integral, whose error is smaller.
             assert!((part / (modulus(*t) / G) - 1.0).abs() <= 1e-9, "{t}: {part}");
         }
         let largest = found[1..].iter().fold(0.0, |largest: f64, (r, _)| largest.max(r.visco.unwrap().step_error));
-        // With constant pressures the errors of the force would be 2.9e-2 and 1.6e-3: the estimate of CREEP.
+        // The reported error is that of the form CREEP, for which the errors of the force would be 2.9e-2 and 1.6e-3.
         assert!(largest > 1e-4 && largest < 0.1, "{step}: {largest}");
     }
 }
@@ -154,7 +155,7 @@ fn under_a_step_of_force_the_approach_follows_the_creep_function() {
         let found = history(&times, |_| Load::Force(force), form);
         let exact = |t: f64| (1.5 * force * creep(t) / 8.0).powf(2.0 / 3.0);
         let of = |k: usize| found[k].0.measures.approach / exact(times[k]) - 1.0;
-        // Less the error of the grid at time 0.
+        // The error of the grid, that at time 0, is subtracted.
         let at = (0.4 / step).round() as usize;
         (of(at) - of(0), of(times.len() - 1) - of(0), found[at].0.visco.unwrap().step_error)
     };
@@ -163,7 +164,7 @@ fn under_a_step_of_force_the_approach_follows_the_creep_function() {
         let (at, end, estimate) = off(step, None);
         assert!(at.abs() <= 2e-4 && end.abs() <= 5e-4, "creep, {step}: {at} {end}");
         let (other, ..) = off(step, Some(Form::Relaxation));
-        // Of second order. The estimate of the step is not below the error of all steps together.
+        // The form RELAXATION has an error of second order in the step. The estimate of a step is not below the error of all steps together.
         assert!(other.abs() <= 0.35 * relaxation && other.abs() <= 2e-2, "relaxation, {step}: {other}");
         assert!(estimate >= at.abs(), "{step}: {estimate} for {at}");
         let (first, ..) = off(step, Some(Form::BackwardEuler));
@@ -173,7 +174,8 @@ fn under_a_step_of_force_the_approach_follows_the_creep_function() {
     }
 }
 
-/// The estimated error of all steps together, compared with much shorter steps: of second order for both forms, of first order for Euler's.
+/// The estimated error of all steps together is compared with results of much shorter steps. It is of second order for both forms, and of first order
+/// for Euler's.
 #[test]
 fn the_error_in_time_is_that_which_shorter_steps_find() {
     let speed = 1.6 * RADIUS * RADIUS;
@@ -200,7 +202,7 @@ fn the_error_in_time_is_that_which_shorter_steps_find() {
                 let off = largest(&|k| (found[k].0 / exact[k].0 - 1.0).abs());
                 let estimate = largest(&|k| found[k].1);
                 println!("{form:?} {step}: off {off:.1e}, estimated {estimate:.1e}");
-                // Forces grow with the power 3/2 of distances.
+                // Forces grow with the power 3/2 of distances, hence the factor 1.5.
                 assert!(1.5 * estimate >= 0.5 * off && estimate <= 15.0 * off, "{form:?} {step}: {estimate} for {off}");
                 assert!(estimate < before * if order == 2 { 0.4 } else { 0.8 }, "{form:?} {step}: {estimate}");
                 before = estimate;
@@ -235,16 +237,16 @@ fn the_pressure_in_the_middle_is_that_of_lee_and_radok() {
     let grid = found[0].1 / exact(0.0) - 1.0;
     let off = found[40].1 / exact(2.0) - 1.0;
     println!("largest pressure at once {grid:.1e}, at t = 2 {off:.1e}");
-    // Hertz's pressure with the current radius has an error of 11 %.
+    // Hertz's pressure for the current radius would have an error of 11 %, so that the test sees the history.
     assert!(grid.abs() <= 3e-3 && (off - grid).abs() <= 3e-3, "{grid} {off}");
 }
 
-/// Ting (1966): the ball approaches with a constant speed up to t = 1, and goes back with it.
+/// Ting (1966): the ball approaches with a constant speed until t = 1, and is withdrawn with the same speed.
 #[test]
 fn loading_and_unloading_are_those_of_ting() {
     let speed = 1.6 * RADIUS * RADIUS;
     let approach = |t: f64| if t <= 1.0 { speed * t } else { speed * (2.0 - t) };
-    // The time during loading with the current radius.
+    // The time during loading at which the contact radius was the current one.
     let same = |t: f64| {
         let left = |from: f64| integral(from, 1.0, |s| modulus(t - s)) - integral(1.0, t, |s| modulus(t - s));
         if left(0.0) < 0.0 {
@@ -257,7 +259,7 @@ fn loading_and_unloading_are_those_of_ting() {
         }
         low
     };
-    // With s = v^2 the integrand is not singular.
+    // The substitution s = v^2 removes the singularity of the integrand.
     let exact = |t: f64| {
         let t1 = if t <= 1.0 { t } else { same(t) };
         let of = |v: f64| modulus(t - v * v) * 3.0 * speed.powf(1.5) * v * v;
@@ -279,7 +281,7 @@ fn loading_and_unloading_are_those_of_ting() {
         let last = times.iter().zip(&found).rfind(|(_, (report, _))| report.measures.force > 0.0).unwrap().0;
         println!("{form:?} {step}: {off:.1e} of the largest force; contact until {last}");
         assert!(off <= most, "{form:?} {step}: {off}");
-        // Lift-off is at 1.5955.
+        // By Ting's solution the ball lifts off at t = 1.5955.
         assert!((last - 1.5955).abs() <= step, "{form:?} {step}: {last}");
         if form == Some(Form::BackwardEuler) {
             assert!(off > 5e-3 && off < 0.7 * before, "of first order: {off} after {before}");

@@ -1,4 +1,4 @@
-//! Prices and the bill of a step of viscoelastic bodies.
+//! Price lists, and the bill of effects, of a step of viscoelastic bodies.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -12,9 +12,9 @@ use crate::bill::{ball, bill, plain, WANTED};
 use crate::families::case::distance;
 use crate::visco::{G, MODULI, TIMES};
 
-/// The relative difference of the forms RELAXATION and CREEP for a step dt from rest. In contact A p is h - approach over the compliance of the form,
-/// on any grid, so that it is the difference of two compliances: those of `1/(G_inf + sum of G_k g_k)` and of `J_0 + sum of J_k (1 - g_k)`. Here `g =
-/// (1 - exp(-x))/x`, x is the step over the relaxation or creep time, and creep times are the zeros of `G_inf + sum of G_k s t_k/(1 + s t_k)`.
+/// The relative difference between the forms RELAXATION and CREEP for a step dt from rest. In contact A p is h - approach over the compliance of the
+/// form, on any grid. So the difference is that of two compliances: those of `1/(G_inf + sum of G_k g_k)` and of `J_0 + sum of J_k (1 - g_k)`. Here
+/// `g = (1 - exp(-x))/x`, x is the step over the relaxation or creep time, and creep times are the zeros of `G_inf + sum of G_k s t_k/(1 + s t_k)`.
 fn by_hand(dt: f64) -> f64 {
     let g = |x: f64| -(-x).exp_m1() / x;
     let rest = G - MODULI.iter().sum::<f64>();
@@ -26,7 +26,8 @@ fn by_hand(dt: f64) -> f64 {
     rates.sort_by(f64::total_cmp);
     let mut compliance = 1.0 / G;
     for k in 0..rates.len() {
-        // A zero between two poles of -s, where the sum falls from + to - infinity; below the first pole it falls from the modulus at rest.
+        // There is one zero between two poles in -s, where the sum falls from + to - infinity. Below the first pole the sum falls from the modulus at
+        // rest.
         let (mut low, mut high) = (if k == 0 { 0.0 } else { rates[k - 1] }, rates[k]);
         for _ in 0..200 {
             let middle = 0.5 * (low + high);
@@ -42,7 +43,7 @@ fn by_hand(dt: f64) -> f64 {
     (compliance * stiffness - 1.0).abs()
 }
 
-/// A step from rest may be solved on any grid: its prices, and a solve to an accuracy, include the error by the length of the step.
+/// A step from rest may be solved on any grid. Its price list, and a solve to an accuracy, include the error by the length of the step.
 #[test]
 fn prices_of_a_step_from_rest_have_the_error_of_the_step() {
     let (m, side) = (48, 0.05);
@@ -53,7 +54,7 @@ fn prices_of_a_step_from_rest_have_the_error_of_the_step() {
     let bodies = Bodies::same(G, 0.4);
     let scene = Scene { visco: Some(step), ..Scene::new(grid, &h, bodies, Load::Approach(0.06)) };
     let error = |scene: &Scene<'_>| solve(scene, &Options::default()).unwrap().2.visco.unwrap().time_error;
-    // Gaps in contact are within the tolerance, relative to h - approach.
+    // Gaps in contact are within the tolerance relative to h - approach, ten times of which is ample.
     let tolerance = 10.0 * Options::default().tolerance;
     let exact = by_hand(0.4);
     assert!((error(&scene) / exact - 1.0).abs() <= tolerance, "{} {exact}", error(&scene));
@@ -69,7 +70,7 @@ fn prices_of_a_step_from_rest_have_the_error_of_the_step() {
     }
     assert_eq!(prices[0].obstacle, None);
     assert_eq!(prices[1].obstacle, Some(Obstacle::Step));
-    // A step from rest of half the length.
+    // The step from rest has half the length.
     let half = Scene { visco: Some(Visco { time_step: 0.2, ..step }), ..scene.clone() };
     assert!((error(&half) / by_hand(0.2) - 1.0).abs() <= tolerance, "{} {}", error(&half), by_hand(0.2));
     let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, None, None).unwrap();
@@ -80,8 +81,8 @@ fn prices_of_a_step_from_rest_have_the_error_of_the_step() {
     assert!(prices.iter().all(|price| price.time_error == 0.0 && price.obstacle != Some(Obstacle::Step)));
 }
 
-/// Equal viscoelastic bodies carry less force at the same approach, over the same area: 1/s of it, with a known s for a constant approach. Short
-/// steps relative to the relaxation time have no effect.
+/// Equal viscoelastic bodies carry less force at the same approach, over the same area: 1/s of the elastic force, with a known s for an approach that
+/// grows linearly. Steps that are short relative to the relaxation time have no effect.
 #[test]
 fn relaxation_is_in_the_bill_of_a_step_from_rest() {
     let h = ball();
@@ -95,16 +96,16 @@ fn relaxation_is_in_the_bill_of_a_step_from_rest() {
         let rows = bill(&scene, 1e-2, &WANTED);
         assert_eq!(rows.len(), 3, "{rows:?}");
         assert!(rows.iter().all(|row| row.omission == Omission::Visco && row.omission.name() == "visco"));
-        // The approach rises from rest during the step: G_k has a factor of the mean of exp(-t/t_k).
+        // The approach rises linearly from rest during the step, so that G_k has the mean of exp(-t/t_k) as a factor.
         let s = 1.0 / (1.0 - 5.0 / 8.0 * (1.0 - (1.0 - f64::exp(-x)) / x));
         let (value, change) = (rows[0].value.expect("a value"), rows[0].change.expect("a change"));
-        // Both solves have a tolerance of a hundredth of the target.
+        // The solves of the bill have a tolerance of a hundredth of the target.
         assert!((change / value - (s - 1.0)).abs() <= 2e-4 * s, "{dt}: {change} {value} {s}");
         assert_eq!((rows[0].verdict, rows[2].change), (verdict, Some(0.0)), "{rows:?}");
         let neglected = Neglected::of(&scene, &Options::default(), 1e-2, None).expect("a scene");
         assert_eq!(neglected, Neglected::default());
     }
-    // If a viscoelastic layer is all that is elastic of its body, it is not left out.
+    // A viscoelastic layer that is the only elastic part of its body is never left out.
     let coated = Scene {
         coating: Some(Coating::of_body_1(0.5, 8e4, 0.3)),
         bodies: Bodies { shear_modulus: [f64::INFINITY, 8e4], poisson_ratio: [0.0, 0.3] },

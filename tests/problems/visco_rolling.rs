@@ -25,7 +25,7 @@ fn love(x: f64, y: f64, dx: f64, dy: f64) -> f64 {
     f(xp, yp) - f(xp, ym) - f(xm, yp) + f(xm, ym)
 }
 
-/// A body with half its modulus in one branch: `J(t)/J(0) = 2 - exp(-t/(2 tau))`, for a relaxation time tau.
+/// A body with half its modulus in one branch, of relaxation time tau: `J(t)/J(0) = 2 - exp(-t/(2 tau))`.
 #[test]
 fn coefficients_are_those_of_the_integral_over_what_has_passed() {
     let (cx, cy, dx, dy, time) = (5, 3, 0.5, 0.8, 0.3);
@@ -35,7 +35,7 @@ fn coefficients_are_those_of_the_integral_over_what_has_passed() {
         let own = love(0.0, 0.0, dx, dy);
         for (kx, ky) in [(0, 0), (-1, 0), (1, 0), (-5, 0), (4, 0), (0, 1), (-1, 2), (3, -3), (-2, -2)] {
             let (x, y) = (f64::from(kx) * dx, f64::from(ky) * dy);
-            // By the midpoint rule, up to exp(-s/L) = 1e-15; the slope of a has two logarithmic singularities.
+            // The midpoint rule, up to exp(-s/L) = 1e-15. The slope of a has two logarithmic singularities.
             let steps = 100_000;
             let h = 36.0 / f64::from(steps);
             let of = |k: i32| {
@@ -45,7 +45,7 @@ fn coefficients_are_those_of_the_integral_over_what_has_passed() {
             let passed = h * (0..steps).map(of).sum::<f64>();
             let exact = (0.9 * love(x, y, dx, dy) + 0.7 * passed) / std::f64::consts::PI;
             let found = table[((ky + cy as i32) * 2 * cx as i32 + kx + cx as i32) as usize];
-            // Midpoints are h L apart.
+            // The error of the midpoint rule, whose points are h L apart, and 1e-8 for the singularities.
             let tolerance = 1e-9 + 0.1 * (h * length / dx).powi(2) + 1e-8;
             assert!((found - exact).abs() <= tolerance * own, "{speed} {kx} {ky}: {found} {exact}");
         }
@@ -68,19 +68,20 @@ fn slow_bodies_are_relaxed_and_fast_ones_elastic() {
         |k: usize| love((k % 8) as f64 * 0.5 - 2.0, (k / 8) as f64 * 0.5 - 2.0, 0.5, 0.5) * 0.7 / std::f64::consts::PI;
     let own = at(4 * 8 + 4);
     for (slow, k) in of(1e-9).iter().zip(0..) {
-        // Over L = 6e-10 the slope of a is at most of the order of log(1e9).
+        // Relaxation changes the coefficient by the slope of a over L = 6e-10. The slope is at most of the order of log(1e9).
         assert!((slow - 2.0 * at(k)).abs() <= 1e-7 * own, "{k}: {slow} {}", at(k));
     }
     for (fast, k) in of(1e9).iter().zip(0..) {
-        // The part within L of 1e7 to 1e9 elements: a logarithm over L.
+        // The part of a that lies within L, which is 1e7 to 1e9 elements: a logarithm over L.
         assert!((fast - at(k)).abs() <= 1e-5 * own, "{k}: {fast} {}", at(k));
     }
 }
 
-/// The limits at both ends of the range of numbers: relaxed if the material relaxes before it moves, elastic if it has passed before it relaxes.
+/// Limits at both ends of the range of numbers: bodies are relaxed if the material relaxes before it moves, and elastic if it has passed before it
+/// relaxes.
 #[test]
 fn at_the_ends_of_the_range_of_numbers_bodies_are_relaxed_or_elastic() {
-    // Half the modulus in one branch: the final compliance is twice the instantaneous one.
+    // With half the modulus in one branch the final compliance is twice the instantaneous one.
     let of = |speed: f64, time: f64, (dx, dy): (f64, f64)| {
         rolling_table((4, 4), (dx, dy), &[body(0.7, 2.0, &[1.0], &[time]), elastic(0.0)], speed).unwrap()
     };
@@ -100,11 +101,11 @@ fn at_the_ends_of_the_range_of_numbers_bodies_are_relaxed_or_elastic() {
         for (k, value) in table.iter().enumerate() {
             let (x, y) = ((k % 8) as f64 - 4.0, (k / 8) as f64 - 4.0);
             let exact = times * d * love(x, y, 1.0, 1.0) * 0.7 / std::f64::consts::PI;
-            // L is below 1e-29 elements or above 1e180; Love's differences lose a digit or two.
+            // L is below 1e-29 elements or above 1e180. The differences in Love's formula lose a digit or two.
             assert!((value / exact - 1.0).abs() <= 1e-13, "{speed} {time} {d} {k}: {value} {exact}");
         }
     }
-    // Coefficients depend on V t/dx and are a length, also if intermediate values underflow or overflow.
+    // Coefficients are a length times a function of V t/dx, also if intermediate values underflow or overflow.
     let middle = of(3.0, 0.2, (0.5, 0.5));
     for (speed, time, size) in
         [(1000, -900, 100), (-1000, 1000, 0), (-300, -300, -600), (500, 200, 700), (-900, 0, -900)]
@@ -117,7 +118,8 @@ fn at_the_ends_of_the_range_of_numbers_bodies_are_relaxed_or_elastic() {
     }
 }
 
-/// If most of the modulus relaxes, the final compliance is reached late. A fast branch with one that does not relax is a body with a smaller modulus.
+/// Two branches whose times are far apart. If most of the modulus relaxes, the final compliance is reached late. A fast branch beside one that does
+/// not relax makes a body with a smaller modulus.
 #[test]
 fn branches_far_apart_are_each_at_its_end() {
     let of = |modulus: &[f64], time: &[f64]| {
@@ -131,15 +133,15 @@ fn branches_far_apart_are_each_at_its_end() {
     }
 }
 
-/// Places between the centres may fall onto the edge of a slender element, and have finite coefficients. They exceed those of a body before
-/// relaxation, and are below the largest ones of a relaxed body with half the modulus.
+/// The quadrature may meet the edge of a slender element, and must still give finite coefficients. They are above those of the body before
+/// relaxation, and below the largest ones of the relaxed body.
 #[test]
 fn coefficients_of_slender_elements_are_numbers() {
     for dy in [1e-3, 1e-6, 1e-9, 1e-12] {
         let table = rolling_table((2, 2), (1.0, dy), &[body(1.0, 1.0, &[0.5], &[1.0]), elastic(0.0)], 1.0).unwrap();
         for (k, value) in table.iter().enumerate() {
             let a = love((k % 4) as f64 - 2.0, dy * ((k / 4) as f64 - 2.0), 1.0, dy) / std::f64::consts::PI;
-            // The differences of the test have round-off: 1e-16 of 1 at dy = 1e-12.
+            // The differences in the test's Love formula have round-off: 1e-16 of 1 at dy = 1e-12.
             let (slack, most) = (1e-3, 2.0 * love(0.0, 0.0, 1.0, dy) / std::f64::consts::PI);
             assert!(*value >= (1.0 - slack) * a && *value <= (1.0 + slack) * most, "{dy:e} {k}: {value:e} {a:e}");
         }
@@ -175,8 +177,8 @@ fn what_creeps_for_ever_or_stands_still_is_refused() {
     assert!(rolling_table((2, 2), (1.0, 1.0), &still, 0.0).unwrap_err().to_string().contains("speed is 0"));
 }
 
-/// Two equal cylinders that relax to half their modulus, 99 x 1 elements, rolling at 1000 mm/s: approach, largest pressure and elements in contact
-/// equal those of CONTACT. The offset of the force from the middle is from NumPy with dense matrices.
+/// Two equal cylinders that relax to half their modulus, on 99 x 1 elements, roll at 1000 mm/s. The approach, the largest pressure and the number of
+/// elements in contact are those that CONTACT printed. The offset of the force from the middle is from a computation with dense matrices in NumPy.
 #[test]
 fn cylinders_that_roll_are_those_of_contact() {
     let (mx, dx, dy, nu, g) = (99, 0.16, 1000.0, 0.4, 1143.0);
@@ -196,7 +198,7 @@ fn cylinders_that_roll_are_those_of_contact() {
         assert_eq!(stop, Outcome::Converged);
         let measures = &report.measures;
         println!("{creep} {} {} {}", measures.approach, measures.max_pressure, measures.contact_count);
-        // The printed digits; for slow creep CONTACT truncates the tail, an error of some 1e-5.
+        // The tolerances are those of the printed digits. For slow creep CONTACT cuts off the tail of the displacements, an error of some 1e-5.
         assert!((measures.approach - approach).abs() <= 4e-5, "{creep}: {}", measures.approach);
         assert!((measures.max_pressure - pressure).abs() <= 0.011, "{creep}: {}", measures.max_pressure);
         assert_eq!(measures.contact_count, count);

@@ -1,4 +1,5 @@
-//! Steps of bodies that relax: the conditions of contact with displacements that the test integrates itself, beside other effects and on handles.
+//! Steps in time of bodies that relax. The contact conditions hold with displacements that the test integrates itself, together with other effects,
+//! and on handles.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -30,7 +31,7 @@ fn ball() -> Vec<f64> {
     (0..MX * MY).map(|i| 0.5 * place(i).0.hypot(place(i).1).powi(2) * SIDE * SIDE).collect()
 }
 
-/// Loads of steps: pressing, holding, a smaller force, a jump, lift-off, and contact again.
+/// Durations and loads of steps: pressing, holding, a smaller force, a jump, lift-off, and contact again.
 const PATH: [(f64, Load); 9] = [
     (0.3, Load::Approach(0.04)),
     (0.5, Load::Approach(0.04)),
@@ -65,7 +66,7 @@ fn steps_of_two_bodies_meet_the_conditions_by_every_method_and_form() {
         for bodies in [[SOLID, FLUID], [Branches::default(), SOLID], [FLUID, Branches::default()]] {
             let scene = relaxing(&h, bodies);
             let scene = Scene { visco: scene.visco.map(|visco| Visco { form: Some(form), ..visco }), ..scene };
-            // The second body has the modulus 5, the branches of the first one add up to 7.
+            // The second body has a modulus of 5, but the branches of the first one add up to 7, so that it needs a larger modulus here.
             let of = Bodies { shear_modulus: [G, 7.5], ..BODIES };
             let scene = Scene { bodies: of, ..scene };
             assert_path(&format!("{form:?}"), &scene, shares(&of), &PATH, &Options::default());
@@ -91,7 +92,7 @@ fn beside_other_effects_steps_meet_the_conditions() {
         let period = Some(Period { x, y });
         assert_path("period", &Scene { period, ..plain.clone() }, both, &by_force, &options);
     }
-    // Coefficients of the test's own, as a whole: half of the compliance is that of a body that relaxes in the same way.
+    // A caller's table, 1.3 times the coefficients of the second body. It stands for both bodies together, and relaxes as the second one.
     let alone = Bodies { shear_modulus: [f64::INFINITY, G], ..BODIES };
     let kernel = Scene::new(grid(), &h, alone, Load::Approach(0.0)).coefficients().unwrap();
     let entry = |i: usize| kernel.at((i % (2 * MX)) as i64 - MX as i64, (i / (2 * MX)) as i64 - MY as i64);
@@ -99,7 +100,7 @@ fn beside_other_effects_steps_meet_the_conditions() {
     let influence = Some(Table::new(MX, MY, &table, &grid()).unwrap());
     let own = Scene { influence, bodies: alone, ..relaxing(&h, [Branches::default(), SOLID]) };
     assert_path("influence", &own, [0.0, 1.0], &PATH, &options);
-    // A layer that relaxes on a rigid body, pressed by a rigid one, and with two periods; two like ones.
+    // Layers that relax on rigid bodies: one pressed by a rigid body, one with two periods, and two like ones.
     let rigid = Bodies { shear_modulus: [f64::INFINITY; 2], ..BODIES };
     let layer = Some(CoatingLayer { thickness: 0.3, shear_modulus: G, poisson_ratio: 0.45 });
     for (layers, period, shares) in [
@@ -113,7 +114,8 @@ fn beside_other_effects_steps_meet_the_conditions() {
     }
 }
 
-/// Moduli `f G` and times as a host multiplies them: quotients by G, and times, differ in their last bits. A step of no time is the elastic solve, to the last bit.
+/// Moduli `f G` and times as a host may compute them, so that the quotients by G, and the times, differ in their last bits. The bodies must count as
+/// alike. A step of no duration is the elastic solve, to the last bit.
 #[test]
 fn bodies_of_one_series_are_alike_whatever_their_moduli() {
     let h = ball();
@@ -138,7 +140,7 @@ fn bodies_of_one_series_are_alike_whatever_their_moduli() {
         let after = |time_step: f64| Some(Visco { bodies: branches, time_step, ..Visco::default() });
         let (_, outcome, _) = solve(&Scene { influence, visco: after(1.0), ..elastic.clone() }, &options).unwrap();
         beside_tables += usize::from(outcome == Outcome::Converged);
-        // Of bodies that do not relax alike.
+        // The same with bodies that do not relax alike.
         let other = [branches[0], Branches { modulus: &series[1][..2], time: &times[1][..2] }];
         let jump = Some(Visco { bodies: other, ..Visco::default() });
         let found = [elastic.clone(), Scene { visco: jump, ..elastic }].map(|scene| solve(&scene, &options).unwrap().0);
@@ -199,7 +201,7 @@ fn a_handle_goes_on_begins_anew_and_keeps_what_it_remembers_where_a_step_is_refu
     for round in 0..2 {
         solver.solve(&step(0.2, false, Load::Approach(0.05)), &options, None, None).unwrap();
         if round == 1 {
-            // Without a surface no pressures carry a force.
+            // A scene without a surface, in which no pressures carry a force, is refused.
             let hole = vec![f64::INFINITY; h.len()];
             let nothing = Scene { undeformed_distance: &hole, ..step(0.3, true, Load::Force(1.0)) };
             solver.solve(&nothing, &options, None, None).unwrap_err();
@@ -223,7 +225,7 @@ fn a_handle_goes_on_begins_anew_and_keeps_what_it_remembers_where_a_step_is_refu
     assert!(matches!(&found[0], Err(Error::InvalidArgument(text)) if text.contains("visco->continues")), "{found:?}");
 }
 
-/// Within a step the force grows with the approach by the stiffness.
+/// At the end of a step the force grows with the approach by the reported stiffness.
 #[test]
 fn the_stiffness_is_that_of_the_step() {
     let (h, options) = (ball(), Options { tolerance: 1e-11, ..Options::default() });
@@ -300,7 +302,7 @@ fn what_is_not_solved_is_refused_by_name() {
         let refused = refusal(scene);
         assert!(matches!(&refused, Error::Unsupported(text) if text.contains(words)), "{words}: {refused}");
     }
-    // A step that continues: its history is that of one grid.
+    // A step that continues is refused, because its history belongs to one grid.
     let later = Scene { visco: plain.visco.map(|visco| Visco { continues: true, ..visco }), ..plain };
     let bill = effects_bill(&later, &Options::default(), &BillOptions::new(1e-2), &[Quantity::Force], None);
     let accuracy = solve_to_accuracy(&later, &Options::default(), &Accuracy::new(1e-2), None, None);

@@ -1,4 +1,4 @@
-//! Real wheel-rail contacts compared with the pressures of the CONTACT program (computed at tolerance 1e-7).
+//! Real wheel-rail contacts, compared with the pressures of the CONTACT program (computed at tolerance 1e-7).
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Scene};
@@ -44,7 +44,7 @@ fn every_method_finds_contacts_pressures_and_contact_area() {
                 let (solver, stop, report) = solve(&scene, &options).unwrap();
                 assert_eq!(stop, Outcome::Converged, "{name}, {method:?}");
                 assert_eq!(solver.state().contact, case.contact, "{name}, {method:?}");
-                // CONTACT stopped at relative updates of 1e-7; with its convergence factors its error is a few times that.
+                // CONTACT stopped at relative updates of 1e-7. With its convergence factors its error is a few times that.
                 for (a, b) in solver.state().p.iter().zip(&case.pressure) {
                     assert!((a - b).abs() <= 5e-7 * largest, "{name}, {method:?}: {a} for {b}");
                 }

@@ -1,5 +1,5 @@
-//! AUTO by approach on white noise. The h of coarse grids is a mean, so that they have full contact and eight times the force, which the fine grid
-//! has to release. The certificates are computed with the test's own product.
+//! AUTO by approach on white noise. The h of coarse grids is a mean over elements, so that coarse grids have full contact and eight times the force,
+//! which the fine grid has to release. The certificates are recomputed with the test's own product.
 
 use std::f64::consts::{PI, TAU};
 
@@ -30,7 +30,7 @@ fn noise(m: usize, border: usize, seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// A transform in place of a power of two values, without scaling.
+/// A Fourier transform in place, of a power of two values, without scaling.
 fn transform(values: &mut [(f64, f64)], sign: f64) {
     let n = values.len();
     for i in 0..n {
@@ -71,7 +71,7 @@ fn coefficient(kx: i64, ky: i64) -> f64 {
     (corner(x + 0.5, y + 0.5) + corner(x - 0.5, y - 0.5) - corner(x + 0.5, y - 0.5) - corner(x - 0.5, y + 0.5)) / PI
 }
 
-/// u = A p.
+/// The displacements u = A p, by a convolution of the test's own.
 pub fn displacements(m: usize, p: &[f64]) -> Vec<f64> {
     let n = (2 * m).next_power_of_two();
     let offset = |k: usize| if k <= n / 2 { k as i64 } else { k as i64 - n as i64 };
@@ -87,7 +87,7 @@ pub fn displacements(m: usize, p: &[f64]) -> Vec<f64> {
 
 #[test]
 fn the_product_of_this_test_is_a_convolution() {
-    // At the centre of a square of side 1 under unit pressure: 4 log(1 + sqrt 2)/pi (Johnson, eq. 3.23: a square of side 2a).
+    // The displacement of the centre of a square of side 1 under unit pressure: 4 log(1 + sqrt 2)/pi (Johnson, eq. 3.23, for a square of side 2a).
     assert!((coefficient(0, 0) - 4.0 * (1.0 + 2f64.sqrt()).ln() / PI).abs() < 1e-15);
     let m = 6;
     let p: Vec<f64> = (0..m * m).map(|i| (i as f64 * TAU / 7.0).sin()).collect();
@@ -98,7 +98,7 @@ fn the_product_of_this_test_is_a_convolution() {
     }
 }
 
-/// Solves and checks the conditions; returns the work units.
+/// Solves, and checks the conditions. Returns the work units.
 fn work_units(m: usize, border: usize, load: Load, h: &[f64]) -> f64 {
     let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
     let scene = Scene::new(grid, h, Bodies::same(1.0, 0.0), load);
@@ -114,7 +114,7 @@ fn work_units(m: usize, border: usize, load: Load, h: &[f64]) -> f64 {
     report.count.work_units
 }
 
-/// The mean pressure is a part of E*, up to nearly full contact: 13 to 24 work units.
+/// The mean pressure is a part of E*, up to nearly full contact. Measured: 13 to 24 work units.
 #[test]
 fn white_noise_by_force_takes_at_most_40_work_units() {
     for (seed, part) in [1e-4, 1e-3, 0.01, 0.1, 0.5].into_iter().enumerate() {
@@ -124,8 +124,8 @@ fn white_noise_by_force_takes_at_most_40_work_units() {
     }
 }
 
-/// 12 to 47 work units. Pressures are scaled to the least energy after large truncations, because these solves would not converge otherwise. Outside
-/// a window displacements must be finite.
+/// Measured: 12 to 47 work units. After large truncations the library scales pressures to the least energy; otherwise these solves would not
+/// converge. Displacements outside a window must be finite.
 #[test]
 fn white_noise_by_approach_takes_at_most_80_work_units() {
     for m in [64, 100, 128, 256] {

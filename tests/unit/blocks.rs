@@ -1,4 +1,4 @@
-//! Blocks of rows compared with the whole grid.
+//! The library's passes over blocks of rows, compared with passes over the whole grid.
 
 use super::fold;
 use crate::error::Error;
@@ -7,7 +7,7 @@ use crate::rectangle::Rectangle;
 use crate::scene::{Bodies, Load, Scene};
 use crate::threads::Threads;
 
-/// One element, one row, one column, rows longer than a block, many blocks, and a number of elements that threads share.
+/// Grids of one element, one row, one column, rows longer than a block, many blocks, and so many elements that threads share them.
 const SIZES: [(usize, usize); 7] = [(1, 1), (1500, 1), (1, 1500), (3000, 3), (40, 130), (257, 66), (200, 190)];
 
 fn grids() -> impl Iterator<Item = (Grid, Threads)> {

@@ -1,4 +1,4 @@
-//! Errors of largest stresses: one at the surface may overtake one below.
+//! Estimated errors of largest stresses: on finer grids a stress at the surface may exceed the largest one below it.
 
 use super::*;
 use crate::grid::Grid;
@@ -23,20 +23,21 @@ fn course(quantity: Quantity, peaks: &[(f64, f64, f64)]) -> Course {
     course
 }
 
-/// The stress below the surface is 1 and has converged; that at the surface is `1.3 - h^.5`.
+/// On three grids: the stress below the surface is 1 and has converged; that at the surface is `1.3 - h^.5`. Each has the largest stress, its depth,
+/// and the stress at the surface.
 const OVERTAKEN: [(f64, f64, f64); 3] = [(0.99, 0.1, 0.3), (1.0, 0.1, 0.593), (1.0, 0.1, 0.8)];
 
 #[test]
 fn a_stress_at_the_surface_that_overtakes_is_counted() {
     let error = course(Quantity::MaxVonMises, &OVERTAKEN).error(false).expect("an error").now();
-    // The remaining change at the surface is at least 2.41 times the last change: the limit is 1.3.
+    // The stress at the surface tends to 1.3: the remaining change is at least 2.41 times the last one.
     assert!((0.29..0.45).contains(&error), "{error}");
     let error = course(Quantity::VonMisesDepth, &OVERTAKEN).error(false).expect("an error").now();
     assert!((error - 0.1).abs() < 1e-9, "{error}");
 }
 
 #[test]
-fn one_that_stays_below_is_not() {
+fn a_stress_at_the_surface_that_stays_below_is_not_counted() {
     let low = OVERTAKEN.map(|(value, depth, at_surface)| (value, depth, 0.3 * at_surface));
     let error = course(Quantity::MaxVonMises, &low).error(false).expect("an error").now();
     assert!(error < 0.01, "{error}");
@@ -44,7 +45,7 @@ fn one_that_stays_below_is_not() {
     assert!(error < 1e-9, "{error}");
 }
 
-/// A stress below the surface converges although its changes do not fall yet; one at the surface may be infinite.
+/// A stress below the surface has a limit, even if its changes do not fall yet. One at the surface may be infinite.
 #[test]
 fn only_a_stress_at_the_surface_may_be_infinite() {
     let grows = |depth: f64| [1.0, 1.1, 1.2].map(|value| (value, depth, if depth == 0.0 { value } else { 0.1 }));
@@ -53,7 +54,7 @@ fn only_a_stress_at_the_surface_may_be_infinite() {
     assert!((0.1..0.4).contains(&error), "{error}");
 }
 
-/// The largest stress, at least ten elements below the surface, has converged; another one, two elements below, grows.
+/// The largest stress lies at least ten elements below the surface and has converged. Another one, two elements below the surface, grows.
 #[test]
 fn a_stress_some_elements_below_the_surface_is_followed_too() {
     let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
@@ -62,7 +63,7 @@ fn a_stress_some_elements_below_the_surface_is_followed_too() {
         let mut course = Course::of(Quantity::MaxShear, &scene);
         for k in 0..3 {
             let mut close = [0.0; CLOSE.len()];
-            // The limit is 1.2.
+            // A stress close to the surface, with the limit 1.2.
             close[5] = 1.2 - grows * 0.5f64.powi(k).sqrt();
             let peak = Peak { value: 1.0, depth: 1.0, elements: elements * 2f64.powi(k), close };
             course.add(k, Value { value: 1.0, peak: Some(peak), least: 0.0 }, 0.0);
@@ -71,11 +72,11 @@ fn a_stress_some_elements_below_the_surface_is_followed_too() {
     };
     assert!((error(0.5, 5.0) - 0.2).abs() < 1e-9, "{}", error(0.5, 5.0));
     assert_eq!(error(-0.5, 5.0), 0.0);
-    // Here the largest stress of the grid before was at this depth itself.
+    // Here the largest stress on the grid before was itself at this depth.
     assert_eq!(error(0.5, 0.5), 0.0);
 }
 
-/// Close to the surface changes fall as the square root of the element size, however small the last change is.
+/// Close to the surface changes are assumed to fall as the square root of the element size, however small the last change is.
 #[test]
 fn a_largest_stress_within_an_element_is_not_believed_to_settle_at_once() {
     let near = [(0.8, 0.0, 0.8), (0.9, 0.0, 0.9), (0.901, 0.0, 0.901)];
@@ -83,7 +84,8 @@ fn a_largest_stress_within_an_element_is_not_believed_to_settle_at_once() {
     assert!((0.049..0.2).contains(&error), "{error}");
 }
 
-/// One small change may be by chance: for tractions, and for stresses with tractions or at a limit.
+/// A single small change may be due to chance, so that three grids are needed: for tractions, and for stresses in scenes with tractions or with a
+/// limit.
 #[test]
 fn three_grids_are_needed_where_tractions_or_pressures_end_steeply() {
     let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
@@ -106,7 +108,7 @@ fn three_grids_are_needed_where_tractions_or_pressures_end_steeply() {
     assert_eq!(is_believed(Quantity::MeanGap, &friction, true), [true; 3]);
 }
 
-/// This holds for a stress some elements below the surface, unless it is deep.
+/// If the pressure is not resolved, a stress some elements below the surface has no estimate, unless it lies deep.
 #[test]
 fn a_stress_below_a_pressure_that_is_not_resolved_is_not_believed() {
     let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
@@ -124,7 +126,8 @@ fn a_stress_below_a_pressure_that_is_not_resolved_is_not_believed() {
     );
 }
 
-/// Creepages that change by -154 and -99: of first order for like bodies. For unlike bodies further changes fall no faster.
+/// Creepages that change by -154 and -99. For like bodies their error is of first order. For unlike bodies further changes may fall no faster than
+/// these.
 #[test]
 fn steady_rolling_of_unlike_bodies_is_slow() {
     let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
@@ -141,7 +144,7 @@ fn steady_rolling_of_unlike_bodies_is_slow() {
     assert!((178.0..179.0).contains(&error(0.25)), "{}", error(0.25));
 }
 
-/// Three grids agree by chance on an area of 1828 elements, but its outline is uncertain.
+/// Three grids agree by chance on an area of 1828 elements, but its outline is uncertain, and so is the area.
 #[test]
 fn an_area_is_no_better_than_its_outline() {
     let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");

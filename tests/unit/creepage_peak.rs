@@ -1,8 +1,8 @@
-//! The largest force between creepages.
+//! The search for the largest force between two creepages.
 
 use super::Peak;
 
-/// The largest force that is found in a search for `wanted`, and the number of creepages that are tried after the first.
+/// The largest force found in a search for the force `wanted`, and the number of creepages tried after the first ones.
 fn largest(wanted: f64, force: impl Fn(f64) -> f64) -> (f64, usize) {
     let (mut peak, mut tried) = (Peak::default(), 0);
     let first = [1.0, 1.3, 2.0, 4.0, 16.0, 1e3, 1e6, 0.5, 0.1];
@@ -36,7 +36,7 @@ fn a_force_beyond_the_peak_is_soon_known_to_be_out_of_reach() {
 #[test]
 fn where_no_creepage_has_a_force_there_is_none_to_try() {
     assert_eq!(largest(1.0, |_| f64::NEG_INFINITY).1, 0);
-    // Creepages on one side of the peak have no force.
+    // The force is unknown for creepages on one side of the peak.
     let (found, tried) =
         largest(1.02, |creepage: f64| if creepage < 0.9 { f64::NEG_INFINITY } else { 1.0 + 0.01 / creepage });
     assert!(found > 1.01 && tried <= 16, "{found} by {tried}");

@@ -1,6 +1,6 @@
 use super::*;
 
-/// E^T M E by the definition, with M `2 z_i - z_(i-1) - z_(i+1)`.
+/// E^T M E z by its definition, with the stand-in M `2 z_i - z_(i-1) - z_(i+1)`.
 fn by_definition(z: &[f64], contact: &[bool], (mx, my): (usize, usize)) -> Vec<f64> {
     let near = |a: usize, b: usize| a.abs_diff(b) <= REACH;
     let box_of = |i: usize| (0..mx * my).filter(move |&j| near(i % mx, j % mx) && near(i / mx, j / mx));
@@ -24,8 +24,8 @@ fn differences(z: &[f64]) -> Vec<f64> {
     (0..z.len()).map(|i| 2.0 * z[i] - at(i.checked_sub(1)) - at(Some(i + 1))).collect()
 }
 
-/// Rows without contact near them, pieces at the edges; grids narrower than a box, and several chunks wide; rows that are processed together, and
-/// single rows at the end.
+/// Grids with rows that have no contact near them and with contact at their edges; grids narrower than a box, and several chunks wide; rows that are
+/// processed together, and single rows at the end.
 const SIZES: [(usize, usize); 12] = [
     (23, 31),
     (5, 40),
@@ -46,7 +46,7 @@ fn in_contact((mx, my): (usize, usize)) -> Vec<bool> {
 }
 
 #[test]
-fn it_is_what_the_definition_says() {
+fn the_extension_is_what_its_definition_says() {
     for threads in [Threads::One, Threads::new(2).unwrap()] {
         for size in SIZES {
             is_by_definition(size, &threads);
@@ -54,7 +54,8 @@ fn it_is_what_the_definition_says() {
     }
 }
 
-/// With C, with one changed place, and with C again: earlier results have no effect, and only changed boxes are counted.
+/// Compares the extension with its definition for C, for C with one change, and for C again. Earlier results must have no effect, and only changed
+/// boxes are counted.
 fn is_by_definition((mx, my): (usize, usize), threads: &Threads) {
     let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
     let mut contact = in_contact((mx, my));
@@ -76,7 +77,7 @@ fn is_by_definition((mx, my): (usize, usize), threads: &Threads) {
     }
 }
 
-/// Fields of two components are extended as single fields, and given values do not change.
+/// Each component of a field of two is extended as a single field. The given values do not change.
 #[test]
 fn components_are_extended_as_one_field_is() {
     for (mx, my) in SIZES {

@@ -1,9 +1,5 @@
-//! A test effect: a Winkler foundation with memory, in series with the bodies. It is one file and one line in the list, and in no release.
-//!
-//! ```text
-//! e = h - approach + A p + c p + v        c: instantaneous;   v: later, T dv/dt + v = d p
-//! v = (v of the step before + r d p)/(1 + r),   r = dt/T      implicit Euler; v = 0 in the beginning
-//! ```
+//! An effect for tests: a Winkler foundation with memory, in series with the bodies. It is one file and one line in the list of effects, and in no
+//! release.
 
 use super::coupled::{Coupled, History};
 use super::effect::{Effect, Value};
@@ -15,16 +11,16 @@ use crate::influence::{self, Coefficients};
 use crate::progress::{Monitor, Outcome};
 use crate::scene::Plain;
 
-/// The foundation in one step.
+/// The foundation during one step in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Foundation {
-    /// c, a length per pressure.
+    /// The instantaneous compliance c, a length per pressure.
     pub at_once: f64,
-    /// d, a length per pressure.
+    /// The compliance d of the later part, a length per pressure.
     pub later: f64,
-    /// r, a number.
+    /// r = dt/T, the step relative to the relaxation time.
     pub step: f64,
-    /// Whether v begins with that of the last step.
+    /// Whether the step continues from the v of the last step.
     pub continues: bool,
 }
 
@@ -79,7 +75,7 @@ impl Effect for Foundation {
     }
 }
 
-/// v before the step, and v in the step.
+/// The delayed displacement v: before the step, and at its end.
 struct Creep<'a> {
     foundation: &'a Foundation,
     before: &'a mut [f64],

@@ -1,4 +1,4 @@
-//! The test effect compared with its own dense solution, with every other effect, and its refusals.
+//! The test effect `foundation`, compared with a dense solution of the test, together with every other effect, and where it is refused.
 
 use std::f64::consts::PI;
 
@@ -34,7 +34,7 @@ fn love(kx: f64, ky: f64) -> f64 {
     2.0 * (1.0 - 0.3) / (2.0 * PI) * rectangle
 }
 
-/// p with `h - approach + (A + c) p = 0` on the contact area, by elimination and exchange of elements.
+/// The pressures with `h - approach + (A + c) p = 0` on the contact area, which is found by elimination and exchange of elements.
 fn dense(h: &[f64], approach: f64, c: f64) -> Vec<f64> {
     let entry = |i: usize, j: usize| {
         let away = |a: usize, b: usize| a as f64 - b as f64;
@@ -57,7 +57,7 @@ fn dense(h: &[f64], approach: f64, c: f64) -> Vec<f64> {
     panic!("the exchange of elements does not end");
 }
 
-/// Gaussian elimination: the last column is the right-hand side. The matrix is positive definite.
+/// Solves by Gaussian elimination. The last column is the right-hand side, and the matrix is positive definite.
 fn eliminate(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     let n = rows.len();
     for k in 0..n {
@@ -98,10 +98,10 @@ fn steps_are_those_of_a_dense_solution_by_every_method() {
             let solver = solver.get_or_insert_with(|| Solver::new(&scene, &options).expect("a solver"));
             let (stop, _) = solver.solve(&scene, &options, None, None).expect("a step");
             assert_eq!(stop, Outcome::Converged, "{method:?} {k}");
-            // Implicit in v: the memory, and an instantaneous d r/(1 + r).
+            // The step is implicit in v: it adds the memory v/(1 + r) to h, and an instantaneous compliance d r/(1 + r).
             let with_memory: Vec<f64> = h.iter().zip(&v).map(|(h, v)| h + v / (1.0 + step)).collect();
             let p = dense(&with_memory, approach, at_once + later * step / (1.0 + step));
-            // A + c is at least c, so that the residual bounds the error of p; the error of v adds to it.
+            // The eigenvalues of A + c are at least c, so that the residual over c bounds the error of p. The error of v adds to it.
             let state = solver.state();
             let distance = norm((0..h.len()).filter(|&i| state.contact[i]).map(|i| state.h[i] - approach));
             let allowed = (1e-9 * distance + off / (1.0 + step)) / at_once + 1e-12 * norm(p.iter().copied());
@@ -114,8 +114,8 @@ fn steps_are_those_of_a_dense_solution_by_every_method() {
     }
 }
 
-/// Asserts the normal conditions of a result: by direct sums over the coefficients of the scene, with v of a step from rest and with distances
-/// `beside` by other effects.
+/// Asserts the contact conditions of a result by direct sums over the coefficients of the scene, with the v of a step from rest and with
+/// displacements `beside` by other effects.
 fn assert_conditions(name: &str, scene: &Scene<'_>, solver: &Solver, beside: &[f64]) {
     let (state, coefficients) = (solver.state(), scene.coefficients().expect("coefficients"));
     let limit = scene.pressure_limit.map_or(f64::INFINITY, |limit| limit.0.at(0));
@@ -135,7 +135,7 @@ fn assert_conditions(name: &str, scene: &Scene<'_>, solver: &Solver, beside: &[f
             violation = violation.max(-(d + u));
         }
     }
-    // The default tolerance, and round-off of sums of 168 terms.
+    // The default tolerance is 1e-6; sums of 168 terms have a round-off below 1e-12.
     assert!(residual.sqrt() <= (1e-6 + 1e-12) * distance.sqrt(), "{name}: {residual:e} {distance:e}");
     assert!(violation <= (1e-6 + 1e-12) * deepest, "{name}: {violation:e}");
     let force = state.p.iter().sum::<f64>() * scene.grid.element_area();
@@ -143,7 +143,7 @@ fn assert_conditions(name: &str, scene: &Scene<'_>, solver: &Solver, beside: &[f
 }
 
 #[test]
-fn beside_every_other_effect_conditions_hold_or_it_is_refused() {
+fn beside_every_other_effect_conditions_hold_or_the_foundation_is_refused() {
     let (grid, h) = (grid(), ball());
     let mut hole = h.clone();
     hole[5 * MX + 6] = f64::INFINITY;
@@ -219,7 +219,8 @@ fn with_unlike_bodies_both_displace_the_distance() {
     let scene = with(FOUNDATION, Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(0.05)) });
     let (solver, stop, _) = solve(&scene, &Options::default()).expect("a solution");
     assert_eq!(stop, Outcome::Converged);
-    // -(Axz qx + Ayz qy), with Axz, Ayz = -K/(pi G) times the integrals of x/r^2 and y/r^2 (tests/friction/unlike.rs has them by quadrature).
+    // The displacement along the normal by tractions, -(Axz qx + Ayz qy), with Axz, Ayz = -K/(pi G) times the integrals of x/r^2 and y/r^2
+    // (tests/friction/unlike.rs has them by quadrature).
     let unlike = crate::friction::Compliance::of(&bodies).unlike;
     let traction = &solver.friction().expect("tractions").traction;
     let by_tractions = |i: usize| {
@@ -233,7 +234,7 @@ fn with_unlike_bodies_both_displace_the_distance() {
     let beside: Vec<f64> = (0..h.len()).map(by_tractions).collect();
     assert!(beside.iter().any(|u| u.abs() > 1e-4), "tractions displace nothing along the normal");
     assert_conditions("unlike bodies", &scene, &solver, &beside);
-    // Derivatives would not include the foundation.
+    // Derivatives are refused, because they would not include the foundation.
     let friction = Friction { sensitivities: true, ..friction };
     let scene = Scene { friction: Some(friction), ..scene };
     let Err(Error::Unsupported(message)) = solve(&scene, &Options::default()) else { panic!("not refused") };
@@ -241,7 +242,7 @@ fn with_unlike_bodies_both_displace_the_distance() {
 }
 
 #[test]
-fn it_is_refused_where_its_properties_say_so() {
+fn the_foundation_is_refused_where_its_properties_say_so() {
     let (grid, h, options) = (grid(), ball(), Options::default());
     let rest = with(FOUNDATION, Scene::new(grid, &h, BODIES, Load::Force(0.05)));
     let on = with(Foundation { continues: true, ..FOUNDATION }, rest.clone());
@@ -249,7 +250,7 @@ fn it_is_refused_where_its_properties_say_so() {
         assert!(with.iter().all(|with| message.contains(with)), "{message}");
     };
     let mut solver = Solver::new(&rest, &options).expect("a solver");
-    // There is no last step, or the last one was without the foundation.
+    // A step that continues is refused if there is no last step, or if the last one was without the foundation.
     for _ in 0..2 {
         let Err(Error::InvalidArgument(message)) = solver.solve(&on, &options, None, None) else { panic!("solved") };
         refused(message, &["foundation", "creep"]);
@@ -288,7 +289,7 @@ fn a_step_that_is_refused_on_the_way_leaves_the_memory_as_it_was() {
         let mut solver = Solver::new(&scene(false, None), &options).expect("a solver");
         solver.solve(&scene(false, None), &options, None, None).expect("a step");
         if refused {
-            // The force exceeds mu N, which is known only after the normal problem is solved.
+            // This force exceeds mu N, which is known only after the normal problem is solved.
             let outcome = solver.solve(&scene(true, Some(-0.05)), &options, None, None);
             assert!(matches!(outcome, Err(Error::Infeasible(_))), "{outcome:?}");
         }

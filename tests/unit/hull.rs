@@ -1,8 +1,8 @@
-//! The hull of points, by which laws have their largest slope.
+//! The convex hull of points, from which friction laws get their largest slope.
 
 use super::*;
 
-/// The farthest of random points in each direction is on the hull, which has no others.
+/// In each direction the farthest of random points is on the hull, and the hull has no other points.
 #[test]
 fn the_hull_has_the_farthest_in_each_direction() {
     let mut state = 7u64;

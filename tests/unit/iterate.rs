@@ -1,4 +1,4 @@
-//! Unit tests of `solver/iterate.rs`.
+//! Unit tests of `solver/iterate.rs`: the descent lowers the energy in each cycle, from any pressures.
 
 use super::*;
 use crate::contact::{lowest, NonNegative, Problem, State};
@@ -10,7 +10,7 @@ use crate::progress::{Goal, Monitor};
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// A wavy punch, on which elements leave and enter.
+/// A problem of a wavy punch, in which elements leave and enter the contact.
 fn scene(load: Load, wave: f64) -> (Problem, State) {
     let grid = Grid::new(14, 11, 0.1, 0.1).expect("a grid");
     let h = |i: usize| 0.02 * (wave * (i % 14) as f64).sin() * (1.3 * (i / 14) as f64).cos();
@@ -52,7 +52,7 @@ fn every_cycle_of_descent_lowers_the_energy_until_the_conditions_hold() {
             if stop == Outcome::Converged {
                 break;
             }
-            // A smaller decrease may be hidden by the round-off of sums of 154 terms.
+            // Round-off of sums of 154 terms may hide a smaller decrease.
             assert!(energy < last + 1e-13 * last.abs(), "{load:?}, cycle {cycle}: {energy:e} after {last:e}");
             last = energy;
         }
@@ -68,13 +68,13 @@ fn descent_takes_over_from_any_pressures() {
         let (mut problem, mut state) = scene(Load::Force(0.05), 2.1);
         state.p.fill(start);
         assert_eq!(descend(&mut problem, &mut state, 1000), Outcome::Converged, "from {start}");
-        // The round-off of sums of 154 pressures.
+        // The tolerance is the round-off of a sum of 154 pressures.
         assert!((state.force() - 0.05).abs() <= 1e-15);
     }
 }
 
-/// The conditions hold in C, and one element outside penetrates by five times the tolerance. This is much less than the norm over C that the
-/// tolerance allows.
+/// The conditions hold in C, but one element outside penetrates by five times the tolerance. Its penetration is much smaller than the norm over C
+/// that the tolerance allows, and must still count.
 #[test]
 fn one_element_that_penetrates_enters_a_large_contact_area() {
     let grid = Grid::new(48, 48, 0.1, 0.1).expect("a grid");

@@ -1,4 +1,4 @@
-//! Marks of the Fortran module: the text of each, and what is none.
+//! Marks of the Fortran module, by which it tells the library of wrong arguments: the text of each, and which values are no marks.
 
 use super::*;
 

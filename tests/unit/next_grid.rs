@@ -1,4 +1,4 @@
-//! Unit tests of `solver/refinement/next_grid.rs`.
+//! Unit tests of `solver/refinement/next_grid.rs`: the choice of the next grid in a search for an accuracy.
 
 use super::*;
 
@@ -33,7 +33,7 @@ fn as_many_doublings_as_the_estimates_ask_for() {
         let excess = Some(Falling { by_two, ..Falling::default() });
         assert_eq!(accuracy.next(&past(excess)), Next::Refine(doublings), "{by_two}");
     }
-    // The largest of several excesses.
+    // Of several excesses (errors over their targets) the largest counts.
     let both = Past { excesses: vec![by_four(2.0), by_four(5.0)], ..past(None) };
     assert_eq!((accuracy.next(&both), both.worst()), (Next::Refine(2), Some(5.0)));
     let unknown = Past { excesses: vec![by_four(2.0), None], ..past(None) };
@@ -58,7 +58,7 @@ fn quantities_of_several_grids_take_one_doubling_after_the_other() {
     assert_eq!(accuracy.next(&Past { predicts_far: false, ..past(by_four(100.0)) }), Next::Refine(1));
 }
 
-/// The next grid follows from one change, which may be small by chance, but not the end of the search.
+/// A single change may be small by chance. The next grid may follow from it, but it must not end the search.
 #[test]
 fn an_error_of_too_few_grids_ends_no_search() {
     let accuracy = Accuracy::new(1e-4);
@@ -71,7 +71,7 @@ fn an_error_of_too_few_grids_ends_no_search() {
 fn limits_shorten_the_step_and_then_end_it() {
     let far = past(by_four(1e4));
     let limited = |change: fn(&mut Accuracy, u32)| {
-        // The limits that allow k doublings.
+        // The limits are such that they allow k doublings.
         (1..=3).for_each(|k| {
             let mut accuracy = Accuracy::new(1e-4);
             change(&mut accuracy, k);
@@ -88,7 +88,8 @@ fn limits_shorten_the_step_and_then_end_it() {
     assert_eq!(elements, "max_elements, 2048, is in the way of 128 x 64 elements");
     let bytes = limited(|accuracy, k| accuracy.max_bytes = 100 + (100 << (2 * k)));
     assert!(bytes.starts_with("max_bytes, 200 of the 500 predicted,"), "{bytes}");
-    // 1.5 s so far, and 4^(1.1 k) more: 4.59, 21.1 and 97.0; one doubling is tried up to 1.2 times the limit.
+    // 1.5 s have passed, and k doublings are predicted to take 4^(1.1 k) s more: 4.59, 21.1 and 97.0 s. A single doubling is tried up to 1.2 times
+    // the limit.
     let seconds = limited(|accuracy, k| accuracy.max_seconds = [5.05, 5.3, 24.5, 111.5][k as usize]);
     assert!(seconds.starts_with("max_seconds, 5.05 of the 6.095 predicted,"), "{seconds}");
 }

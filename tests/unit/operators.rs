@@ -1,11 +1,11 @@
-//! Products by operators of a part of the grid, compared with plain sums.
+//! Products by operators for a part of the grid, compared with plain sums.
 
 use super::{loaded, MadeOf, Operator, Operators, Rectangle};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, HalfSpace, Layer, Table};
 use crate::threads::Threads;
 
-/// Errors of a transform are some rounding errors of the largest displacement.
+/// The error of a product by FFT is some rounding errors of the largest displacement.
 const ROUND_OFF: f64 = 32.0 * f64::EPSILON;
 
 fn grid() -> Grid {
@@ -16,7 +16,7 @@ fn coefficients(grid: &Grid) -> Coefficients {
     HalfSpace::new(grid.dx, grid.dy, 1.3).into()
 }
 
-/// Varying pressures on some columns and rows.
+/// Varying pressures on the given columns and rows, and 0 elsewhere.
 fn pressures(grid: &Grid, columns: std::ops::Range<usize>, rows: std::ops::Range<usize>) -> Vec<f64> {
     let value = |i: usize| {
         let (x, y) = (i % grid.mx, i / grid.mx);
@@ -30,12 +30,12 @@ fn pressures(grid: &Grid, columns: std::ops::Range<usize>, rows: std::ops::Range
     (0..grid.len()).map(value).collect()
 }
 
-/// Kinds of coefficients for which parts may have operators: of bodies, with an uneven layer, of an even table.
+/// The kinds of coefficients for which a part of the grid may have its own operator: those of bodies, with an uneven layer, and of an even table.
 fn all_coefficients(grid: &Grid) -> [(&'static str, Coefficients); 3] {
     let half_space = coefficients(grid);
     let layer: Vec<f64> = (0..grid.len()).map(|i| (i % 5) as f64).collect();
     let layer = Layer::per_element(&layer, half_space.at(0, 0)).expect("a layer");
-    // 2 mx by 2 my offsets, of either sign.
+    // A table has 2 mx by 2 my offsets, of either sign.
     let offset = |k: usize, m: usize| (k as f64 - m as f64).abs();
     let value = |i: usize| 1.0 / (1.0 + offset(i % (2 * grid.mx), grid.mx) + 2.0 * offset(i / (2 * grid.mx), grid.my));
     let table: Vec<f64> = (0..4 * grid.len()).map(value).collect();
@@ -43,7 +43,7 @@ fn all_coefficients(grid: &Grid) -> [(&'static str, Coefficients); 3] {
     [("bodies", half_space.clone()), ("layer", half_space.with_layer(layer)), ("table", table.into())]
 }
 
-/// `u = A p` of element i as a sum, row by row, so that its own round-off is some rounding errors as well.
+/// `u = A p` of element i as a direct sum, row by row, so that its own round-off is also some rounding errors only.
 fn sum(coefficients: &Coefficients, grid: &Grid, p: &[f64], i: usize) -> f64 {
     let of_row = |(y, p): (usize, &[f64])| {
         let loaded = p.iter().enumerate().filter(|(_, p)| **p != 0.0);
@@ -52,7 +52,7 @@ fn sum(coefficients: &Coefficients, grid: &Grid, p: &[f64], i: usize) -> f64 {
     p.chunks_exact(grid.mx).enumerate().map(of_row).sum()
 }
 
-/// Loaded columns and rows, and whether they have their own operator.
+/// Loaded columns and rows, and whether they get an operator of their own.
 fn cases() -> [(&'static str, std::ops::Range<usize>, std::ops::Range<usize>, bool); 8] {
     [
         ("in the middle", 40..121, 30..100, true),
@@ -79,7 +79,7 @@ fn products_of_a_part_are_those_of_all_elements() {
             operators.displace(of, &p, &mut u).expect("a product");
             let largest = u.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
             assert!(u.iter().all(|u| u.is_finite()), "{kind}, {name}");
-            // Corners and edges are included: there too short a period of a part would show first.
+            // Corners and edges are compared, because too short a period of a part would show there first.
             let edges = (0..grid.mx).step_by(20).flat_map(|x| [x, grid.len() - 1 - x]);
             let sides = (0..grid.my).step_by(16).flat_map(|y| [y * grid.mx, (y + 1) * grid.mx - 1]);
             for i in edges.chain(sides).chain((0..grid.len()).step_by(997)) {
@@ -104,7 +104,7 @@ fn on_one_row_a_part_is_a_part_of_the_row() {
     Operators::default().displace(of, &p, &mut u).expect("a product");
     for i in (0..grid.len()).step_by(1000).chain([grid.len() - 1]) {
         let (exact, own) = (sum(&coefficients, &grid, &p, i), 17.0 * coefficients.at(0, 0));
-        // A sum of a thousand terms has more round-off.
+        // The plain sum of a thousand terms has more round-off.
         assert!((u[i] - exact).abs() <= 10.0 * ROUND_OFF * own, "{} for {exact} at {i}", u[i]);
     }
 }
@@ -146,7 +146,7 @@ fn no_bit_depends_on_the_products_before() {
         let after_others = product(&mut operators, p);
         assert!(after_others == product(&mut Operators::default(), p));
     }
-    // Products with other coefficients before have no effect either.
+    // Earlier products with other coefficients have no effect, either.
     let before = HalfSpace::new(grid.dy, grid.dx, 2.0).into();
     let mut operators = Operators::default();
     let of_before = MadeOf { coefficients: &before, ..of };

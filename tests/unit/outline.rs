@@ -1,4 +1,4 @@
-//! Unit tests of `contact/outline.rs`.
+//! Unit tests of `contact/outline.rs`: the outline of the contact area, in edges and changes along rows and columns.
 
 use super::*;
 use crate::grid::Grid;
@@ -20,12 +20,12 @@ fn changes_and_edges_of_a_corner() {
     }
     let outline = Outline::of(&state);
     assert_eq!((outline.changes, outline.edges, outline.border, outline.rows), (2, 2, (2, 2), 2));
-    // There are two runs along rows and two along columns, with 2 and 1 elements.
+    // A run is a sequence of elements in contact. There are two runs along rows and two along columns, with 2 and 1 elements.
     assert_eq!(outline.chord(3, (false, false)), 1.5);
     assert_eq!(outline.corrected_area(&state, 3), (3.0 - 2.0 * EXCESS_PER_CHANGE) * 2.0);
 }
 
-/// A circle of radius r is crossed twice by each of 2 r rows and 2 r columns: M = 8 r.
+/// A circle of radius r is crossed twice by each of 2 r rows and 2 r columns, so that the number of changes is M = 8 r.
 #[test]
 fn a_circle_has_eight_changes_a_radius() {
     let grid = Grid::new(140, 140, 1.0, 1.0).unwrap();
@@ -38,17 +38,17 @@ fn a_circle_has_eight_changes_a_radius() {
             state.contact[i] = x.hypot(y) <= r;
         }
         let outline = Outline::of(&state);
-        // The first and last row or column may be missed on either side.
+        // On each side the first row or column may miss the circle.
         assert!((outline.changes as f64 - 8.0 * r).abs() <= 8.0, "{} of {}", outline.changes, 8.0 * r);
         assert_eq!(outline.edges, 0);
-        // The error of M is at most 8 of 400, and so is that of chords.
+        // The error of M is at most 8 of 400, and that of chords is as large.
         let count = state.contact_count();
         assert!(
             (outline.scatter(count, (false, false)) - 1.0).abs() <= 0.02,
             "{}",
             outline.scatter(count, (false, false))
         );
-        // Four such circles.
+        // Four such circles have twice the scatter relative to that of one.
         let four = Outline { changes: 4 * outline.changes, ..outline };
         assert!(
             (four.scatter(4 * count, (false, false)) - 2.0).abs() <= 0.04,
@@ -58,7 +58,7 @@ fn a_circle_has_eight_changes_a_radius() {
     }
 }
 
-/// Small random contact areas with holes: sides are counted as by definition, and at most as many are straight as there are sides.
+/// Small random contact areas with holes. The sides at holes are counted as by definition, and at most that many count as straight.
 #[test]
 fn sides_at_holes_are_those_of_pairs_of_neighbours() {
     let mut bits = 0x9E37_79B9_7F4A_7C15_u64;
@@ -70,7 +70,7 @@ fn sides_at_holes_are_those_of_pairs_of_neighbours() {
         let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
         for _ in 0..200 {
             let mut state = State::new(grid, (Load::Approach(0.0), 0.0), &Threads::One).unwrap();
-            // Rows often equal the one above.
+            // Rows often equal the row above, so that there are straight sides.
             for i in 0..mx * my {
                 state.h[i] = if draw(4) == 0 { f64::INFINITY } else { 0.0 };
                 let as_above = i >= mx && draw(8) != 0;

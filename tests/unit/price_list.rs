@@ -1,4 +1,4 @@
-//! Unit tests of `solver/refinement/price_list.rs`.
+//! Unit tests of `solver/refinement/price_list.rs`: the time that a price list may take for samples.
 
 use super::*;
 
@@ -17,8 +17,8 @@ fn row(seconds: f64, obstacle: Option<Obstacle>) -> Price {
     }
 }
 
-/// The time for samples follows from the dearest row without an obstacle, by its least predicted seconds so far, because samples of few elements may
-/// predict too many.
+/// The time for samples follows from the dearest row without an obstacle, by the least of its predictions so far, because samples of few elements may
+/// predict too many seconds.
 #[test]
 fn the_dearest_row_pays_for_the_samples_at_its_least() {
     let mut budget = Budget::default();

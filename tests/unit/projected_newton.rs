@@ -1,4 +1,4 @@
-//! Unit tests of `methods/projected_newton`: bounds and the constant of a prescribed force.
+//! Unit tests of `methods/projected_newton`: pressures at their bounds, and the constant by which pressures carry a prescribed force.
 
 use super::bounds::{find_free, snap};
 use super::projection::constant_for;
@@ -23,7 +23,7 @@ fn the_constant_carries_the_sum_wherever_pressures_are_cut() {
         let sum = |c: f64| p.iter().map(|p| (p + c).max(0.0)).sum();
         let slope = |c: f64| p.iter().filter(|p| *p + c > 0.0).count();
         let constant = constant_for(wanted, sum, slope, 512.0);
-        // 21 terms, each rounded at the size of the constant.
+        // A sum of 21 terms, each with a rounding error of the size of the constant.
         assert!((sum(constant) - wanted).abs() <= 21.0 * f64::EPSILON * wanted.max(512.0), "{wanted}: {constant}");
     }
 }
@@ -45,7 +45,7 @@ fn pressures_at_a_bound_but_for_rounding_are_at_it() {
     state.p = vec![limit * (1.0 - rest), rest, 1.0, 1e-6];
     snap(&mut state, PressureLimit(Each::Uniform(limit)));
     assert_eq!(state.p, [limit, 0.0, 1.0, 1e-6]);
-    // Without limits a small pressure does not change.
+    // Without limits a small positive pressure stays as it is.
     state.p = vec![1.0, rest, 1.0, 1e-6];
     snap(&mut state, NonNegative);
     assert_eq!(state.p, [1.0, rest, 1.0, 1e-6]);
@@ -53,13 +53,13 @@ fn pressures_at_a_bound_but_for_rounding_are_at_it() {
 
 #[test]
 fn an_approach_between_held_and_touched_elements_frees_those_in_the_wrong_order() {
-    // By force, with an empty C: two elements at their limit, at distances of .1 and .4, and two without pressure, at .3 and .9.
+    // With a given force and an empty C: two elements at their limit, at distances of .1 and .4, and two without pressure, at .3 and .9.
     let mut state = state(Load::Force(2.0), &[0.1, 0.4, 0.3, 0.9]);
     state.p = vec![1.0, 1.0, 0.0, 0.0];
     state.at_limit = vec![true, true, false, false];
     let (mut distance, mut free) = (vec![0.0; 4], vec![false; 4]);
     find_free(&state, PressureLimit(Each::Uniform(1.0)), &mut distance, &mut free);
-    // The approach is .35, the middle of .4 and .3.
+    // The elements at .4 and .3 are in the wrong order. The approach is set to .35 between them.
     assert_eq!(free, [false, true, true, false], "{distance:?}");
     assert!((distance[1] - 0.05).abs() < 1e-15 && (distance[2] + 0.05).abs() < 1e-15, "{distance:?}");
 }

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Coefficients of plane strain: displacements by a uniform pressure on one element, at the centres of others.
+/// Coefficients of plane strain: displacements at the centres of elements by a uniform pressure on one element.
 fn kernel(n: usize, period: bool) -> Vec<f64> {
     let antiderivative = |x: f64| if x == 0.0 { 0.0 } else { x * (x.abs().ln() - 1.0) };
     let free = |k: f64| antiderivative(k - 0.5) - antiderivative(k + 0.5) + (n as f64).ln() + 1.0;
@@ -8,7 +8,7 @@ fn kernel(n: usize, period: bool) -> Vec<f64> {
     (0..n).map(|k| free(wrapped(k) as f64)).collect()
 }
 
-/// C of a line, by the lengths of pieces and of the gaps before them.
+/// A contact area on a line, given by pairs: the length of a gap, and the length of the piece after it.
 fn contact(n: usize, pieces: &[(usize, usize)]) -> Vec<bool> {
     let mut contact = Vec::new();
     for &(gap, length) in pieces {
@@ -31,7 +31,7 @@ fn areas(n: usize) -> Vec<Vec<bool>> {
     ]
 }
 
-/// g of every punch, per element, by the definition.
+/// The pressures g of each punch on its elements, by their definition.
 fn shapes(punches: &Punches, n: usize) -> Vec<Vec<f64>> {
     let mut shapes: Vec<Vec<f64>> = Vec::new();
     for &(start, end) in &punches.pieces {
@@ -50,7 +50,7 @@ fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Q^T Q r and the terms of the joints, with 1 for M.
+/// Q^T Q r and the terms of the joints by their definition, with 1 for M.
 fn by_definition(punches: &Punches, r: &[f64], without_force: bool) -> Vec<f64> {
     let (n, shapes) = (r.len(), shapes(punches, r.len()));
     let mut z = r.to_vec();
@@ -91,7 +91,7 @@ fn forces_of_pieces_are_those_of_the_definition() {
                 let wanted = by_definition(&punches, &r, without_force);
                 let size = wanted.iter().fold(1e-300, |size: f64, z| size.max(z.abs()));
                 for i in 0..n {
-                    // Both are sums of some hundred terms of at most this size.
+                    // Both results are sums of some hundred terms of at most this size.
                     assert!((z[i] - wanted[i]).abs() <= 1e-12 * size, "case {case}, {i}: {} {}", z[i], wanted[i]);
                 }
                 if without_force {
@@ -103,8 +103,8 @@ fn forces_of_pieces_are_those_of_the_definition() {
     }
 }
 
-/// The displacements by joined pieces, by direct sums, are within a quarter of the energy everywhere on C (0.80 to 1.05 if every second element is in
-/// contact). The energy without sums is accurate to a twentieth.
+/// The displacements by joined pieces, by direct sums, differ from the energy by at most a quarter everywhere on C (they are 0.80 to 1.05 of it if
+/// every second element is in contact). The energy that is computed without sums is accurate to a twentieth.
 #[test]
 fn joined_pieces_are_near_a_flat_punch() {
     let n = 400;

@@ -35,22 +35,25 @@ fn what_is_done_beyond_a_residual_goes() {
     assert_eq!(direct.cost_to(1e-2, 1e-2), (4.0, 3.0));
 }
 
-/// With friction the normal problem is solved first, then the tangential one, whose products are not reported: four between its first iterations.
+/// With friction the normal problem is solved first, then the tangential one. The products of the latter are not reported; there are four between its
+/// first iterations.
 #[test]
-fn both_problems_of_friction_end_there() {
+fn normal_and_tangential_problems_end_at_their_tolerance() {
     let reached = vec![(1e-2, 1.0, 1.0), (1e-4, 2.0, 2.0), (1e-1, 3.0, 2.0), (1e-3, 4.0, 2.0), (1e-5, 5.0, 2.0)];
-    // 1 s and one product of the normal problem, 1 s and a third of 6 products of the tangential one.
+    // To this tolerance the last iteration of either problem is not needed: 1 s and one product of the normal one, 1 s and a third of 6 products of
+    // the tangential one.
     assert_eq!(sample(reached, 6.0).cost_to(1e-2, 1e-2), (6.0 - 1.0 - 1.0, 9.0 - 1.0 - 2.0));
 }
 
-/// Tangential problems without reports, between two normal ones: any residual needs their time.
+/// Turns of a coupled problem: a tangential problem without reports between two normal ones. Its time is needed for any residual.
 #[test]
 fn turns_are_needed_by_any_residual() {
     let turns = sample(vec![(1e-4, 1.0, 1.0), (1e-6, 2.0, 2.0), (1e-5, 12.0, 3.0), (1e-7, 13.0, 4.0)], 0.0);
     assert_eq!(turns.cost_to(1e-2, 1e-2), (14.0 - 2.0, 5.0 - 2.0));
 }
 
-/// Half of the seconds and a third of 9 tangential products to 1e-2 for 1e-6: at 1e-4, half way by the logarithm, 3/4 and 2/3.
+/// To 1e-2 friction takes half of the seconds and a third of the 9 tangential products that it takes to 1e-6. At 1e-4, half way by the logarithm, it
+/// takes 3/4 and 2/3.
 #[test]
 fn between_two_tolerances_costs_are_those_of_the_logarithm() {
     let mut sample = sample(vec![(1e-6, 1.0, 1.0)], 9.0);
@@ -61,9 +64,9 @@ fn between_two_tolerances_costs_are_those_of_the_logarithm() {
         assert!((a - part).abs() < 1e-12 && (b - products).abs() < 1e-12, "{a} {b}");
     };
     near(sample.with_friction(1e-4), (0.75, 6.0));
-    // Beyond both ends, the values at the ends.
+    // Beyond either end the values are those at the end.
     near(sample.with_friction(1e-8), (1.0, 9.0));
     near(sample.with_friction(1e-1), (0.5, 3.0));
-    // Two products of the normal problem to 1e-6; half of the reported ones to 1e-2.
+    // The normal problem takes two products to 1e-6, and half of the reported ones to 1e-2.
     assert_eq!((sample.normal_products(1e-6, 1e-6), sample.normal_products(1e-2, 1e-2)), (2.0, 1.0));
 }

@@ -1,7 +1,8 @@
 use super::{seconds_on, Cost, GROWTH};
 
-/// Coefficients of a scene that repeats itself take 1.2 ms on each small grid, the solve grows with the elements: on 256 times these it takes 256 times as long
-/// or more, the coefficients not twice as long. (With the least power of .4 they had nine times as long.)
+/// The coefficients of a periodic scene take 1.2 ms on each small grid, while the time of the solve grows with the elements. On 256 times the
+/// elements the solve is predicted to take 256 times as long or more, and the coefficients less than twice as long. (With the least power of .4 they
+/// would take nine times as long.)
 #[test]
 fn a_set_up_that_stays_is_not_carried_on_as_a_solve() {
     let of = |m: f64| Cost { elements: m * m, seconds: 1.2e-3 + 1e-8 * m * m, setup: 1.2e-3, products: 4.0 };
@@ -13,7 +14,7 @@ fn a_set_up_that_stays_is_not_carried_on_as_a_solve() {
     assert_eq!(seconds_on(&[], 100.0), 0.0);
 }
 
-/// Products that grow by a fifth with a doubling: the seconds of 10 ns for each element and product, whichever sample is carried on.
+/// The number of products grows by a fifth with each doubling. The predicted seconds are 10 ns for each element and product, from whichever sample.
 #[test]
 fn products_that_grow_are_carried_on() {
     let of = |m: f64| {

@@ -1,4 +1,5 @@
-//! Passes with lanes of different lengths; elements that leave and enter by formulas, compared with the rules of the admissible sets.
+//! Passes over segments of the contact area with SIMD lanes of different lengths. The elements that leave and enter the contact are compared with the
+//! rules of the admissible sets.
 
 use super::super::block::Terms;
 use super::super::passes::{Changes, Sum};
@@ -8,7 +9,7 @@ use crate::methods::projected_cg::formulas::*;
 use crate::methods::projected_cg::step_sums::Update;
 use crate::scene::{Each, PressureLimit};
 
-/// A contact area, and varying values.
+/// A contact area, its segments, and arrays of varying values.
 struct Given {
     contact: Vec<bool>,
     segments: Vec<u32>,
@@ -35,7 +36,7 @@ const UPDATES: [Update; 2] = [
     Update { alpha: 0.7, gamma: 0.2, is_corrected: true, factor: 0.5 },
 ];
 
-/// The sums with the lanes of a machine, as bits.
+/// The sums of a pass with the lanes of a machine, as bits.
 fn sums<const A: usize, const B: usize, const K: usize>(
     arch: pulp::Arch,
     block: Block<'_>,
@@ -114,7 +115,7 @@ fn no_bit_depends_on_the_length_of_vectors() {
     }
 }
 
-/// The elements that leave, by the rule of the set and by the forecast.
+/// Asserts that the elements that leave the contact, and those forecast to leave, are those of the set's rule.
 fn check_who_leaves<S: AdmissibleSet>(set: S, n: usize) {
     let Given { contact, segments, doubles: [p, ..], singles: [t, d, _] } = &given(n);
     let p: Vec<f64> = p.iter().map(|p| p.abs()).collect();
@@ -151,7 +152,7 @@ fn elements_leave_by_the_rule_of_the_admissible_set() {
 
 #[test]
 fn what_is_no_number_or_at_a_bound_does_not_leave() {
-    // The step leads to pressures of 0, at the limit, and beyond both; one is no number.
+    // The step leads to pressures of 0, of the limit, and beyond both bounds; one pressure is NaN.
     let (p, t) = ([0.5, 0.5, 0.5, 0.5, f64::NAN], [-0.5_f32, 0.5, -0.6, 0.6, 1.0]);
     let block = Block::new(0, &[true; 5], 5, &[0]);
     let (moved, set) = (Moved { alpha: 1.0, gamma: 0.0 }, PressureLimit(Each::Uniform(1.0)));
@@ -159,10 +160,10 @@ fn what_is_no_number_or_at_a_bound_does_not_leave() {
     assert_eq!(leaving(pulp::Arch::new(), block, (&p, &t, &t), wanted), [2, 3]);
 }
 
-/// The elements that enter after a move, by the rule of the set.
+/// Asserts that the elements that enter the contact after a step are those of the set's rule.
 fn check_who_enters<S: AdmissibleSet>(set: S, n: usize) {
     let Given { contact, doubles: [h, before, _], singles: [_, q, z], .. } = &given(n);
-    // Some elements have no surface.
+    // Some elements have no surface, and must not enter.
     let h: Vec<f64> = h.iter().enumerate().map(|(i, h)| if i % 13 == 5 { f64::INFINITY } else { *h }).collect();
     let at_limit: Vec<bool> = (0..n).map(|i| S::LIMITED && !contact[i] && i % 3 == 0).collect();
     let held = if S::LIMITED { &at_limit[..] } else { &[] };
@@ -208,7 +209,7 @@ fn at_e_of_zero_nobody_enters() {
     assert_eq!(list, [1, 2]);
 }
 
-/// Sums over C of `terms(element)`, one after the other.
+/// The sums over C of `terms(element)`, element by element.
 fn plain<const K: usize>(contact: &[bool], terms: impl Fn(usize) -> [f64; K]) -> [f64; K] {
     let mut sums = [0.0; K];
     for i in (0..contact.len()).filter(|&i| contact[i]) {
@@ -217,7 +218,7 @@ fn plain<const K: usize>(contact: &[bool], terms: impl Fn(usize) -> [f64; K]) ->
     sums
 }
 
-/// Asserts sums of some hundred terms of at most 1, up to round-off.
+/// Asserts that sums are equal up to the round-off of some hundred terms of at most 1.
 fn check<const K: usize>(found: [f64; K], expected: [f64; K], what: &str) {
     for (k, (found, expected)) in found.iter().zip(expected).enumerate() {
         assert!((found - expected).abs() < 1e-12, "{what}, sum {k}: {found} for {expected}");

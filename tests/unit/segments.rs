@@ -3,14 +3,14 @@ use crate::lanes::{Holds, Lanes};
 
 const SIZES: [(usize, usize); 6] = [(130, 170), (1, 1), (3, 1), (7, 9), (33, 40), (8, 300)];
 
-/// Contact areas of single elements, of pieces, empty, and full.
+/// Contact areas on n elements: of single elements, of pieces, empty, and full.
 fn contact_areas(n: usize) -> Vec<Vec<bool>> {
     let every = |k: usize| (0..n).map(|i| i % k == 0).collect();
     let pieces = |k: usize| (0..n).map(|i| i / k % 3 == 1).collect();
     vec![every(2), every(9), every(17), every(100), pieces(5), pieces(8), pieces(60), vec![false; n], vec![true; n]]
 }
 
-/// The segments found in a contact area, on one thread or several.
+/// The segments of a contact area, found on one thread or several.
 fn segments(grid: &Grid, threads: usize, contact: &[bool]) -> Segments {
     let mut segments = Segments::new(grid, &Threads::new(threads).expect("threads")).expect("memory");
     segments.change_all();
@@ -31,7 +31,7 @@ fn segments_are_the_vectors_with_an_element_in_contact() {
     }
 }
 
-/// The number of elements, the sum of a, and of a b.
+/// A pass for tests. As `Terms`: the number of elements, the sum of a, and the sum of a b.
 struct Formula;
 
 impl Terms<1, 1, 3> for Formula {
@@ -40,14 +40,14 @@ impl Terms<1, 1, 3> for Formula {
     }
 }
 
-/// `value + a - 2 b`.
+/// As `Becomes`: the new value is `value + a - 2 b`.
 impl Becomes<1, 1> for Formula {
     fn of<S: pulp::Simd>(&self, value: Lanes<S>, [a]: [Lanes<S>; 1], [b]: [Lanes<S>; 1]) -> Lanes<S> {
         value + (a - 2.0 * b)
     }
 }
 
-/// The elements whose value is less than b, and whose index is no multiple of three.
+/// As `Wanted`: the elements whose value is less than b and whose index is no multiple of three.
 impl Wanted<1> for Formula {
     fn of<S: pulp::Simd>(&self, first: usize, value: Lanes<S>, [b]: [Lanes<S>; 1]) -> Holds<S> {
         let divides = value.of_each(|lane| f64::from(u8::from((first + lane) % 3 == 0)));
@@ -55,7 +55,7 @@ impl Wanted<1> for Formula {
     }
 }
 
-/// Whole numbers in contact, whose sums have no round-off, and NaN outside.
+/// Whole numbers for the elements in contact, so that sums have no round-off, and NaN outside.
 fn arrays(contact: &[bool]) -> (Vec<f64>, Vec<f32>) {
     let value = |i: usize| if contact[i] { (i * i % 17) as f64 - 5.0 } else { f64::NAN };
     (0..contact.len()).map(|i| (value(i), (i * 7 % 11) as f32 - 3.0)).unzip()

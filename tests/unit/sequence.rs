@@ -1,4 +1,4 @@
-//! Errors from values on several grids, for sequences with known limits.
+//! Errors estimated from the values on several grids, for sequences with known limits.
 
 use super::Sequence;
 
@@ -38,7 +38,7 @@ fn two_grids_count_as_first_order() {
 
 #[test]
 fn what_grows_without_an_end_has_no_error() {
-    // As at the tip of a cone, and at the edge of a punch.
+    // Values that grow like stresses at the tip of a cone, and like pressures at the edge of a punch.
     assert!(of(&[0, 1, 2], |h| -h.ln()).error().is_none());
     assert!(of(&[0, 1, 2, 3], |h| h.powf(-0.5)).error().is_none());
 }
@@ -54,20 +54,20 @@ fn what_jumps_is_covered_by_the_change_before() {
     assert_eq!(falling.hidden, 1e-6);
 }
 
-/// Forces of steady rolling of unlike bodies, with a limit of 1.83. The last change is small by chance.
+/// Forces of steady rolling of unlike bodies, which tend to 1.83. The last change is small by chance.
 #[test]
 fn a_small_change_is_no_second_order_where_the_order_is_the_first() {
     let mut sequence = Sequence::default();
     for (k, value) in [1.54, 1.67, 1.65].into_iter().enumerate() {
         sequence.add(k as i32, value, 0.0);
     }
-    // Half of the last change but one.
+    // The error of first order is half of the last change but one, because the last change is smaller.
     let first = sequence.error_of_first_order().expect("an error");
     assert!((first.now() - 0.065).abs() < 1e-12 && first.by_four == 0.0, "{first:?}");
     assert!(sequence.error().expect("an error").now() < 0.03);
 }
 
-/// A value with the error `h^.5`: changes fall by the square root of 2, less than the factor 0.75 allows.
+/// A value with the error `h^.5`: its changes fall by the square root of 2, to .71 of the one before, less than the allowed factor 0.75.
 #[test]
 fn what_converges_slowly_is_covered() {
     for last in [1, 2, 5] {
@@ -82,7 +82,7 @@ fn what_converges_slowly_is_covered() {
         let truth = 0.5f64.powi(*doublings.last().expect("a grid")).sqrt();
         assert!((0.9 * truth..1.1 * truth).contains(&found), "{doublings:?}: {found} of {truth}");
     }
-    // If changes do not fall, the error is three times the last change.
+    // If changes do not fall, the error by the factor 0.75 is three times the last change.
     let grows = of(&[0, 1, 2], |h| -h.log2());
     assert!(grows.error().is_none());
     assert!((grows.error_if_slow(0.75).expect("an error").now() - 3.0).abs() < 1e-12);

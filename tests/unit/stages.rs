@@ -1,11 +1,11 @@
-//! The share of cycles of the methods in a list.
+//! How the methods of a list share the cycles.
 
 use super::{share, stages, Stage, LEAST_SHARE};
 use crate::contact::{AdmissibleSet, NonNegative};
 use crate::scene::PressureLimit;
 use crate::solver::Method;
 
-/// The cycles of each method of a list, if none of them converges.
+/// The number of cycles of each method of a list if none of them converges. `most`: the cycles of all.
 fn cycles<S: AdmissibleSet>(list: &[Stage], most: u64) -> Vec<u64> {
     let mut done = 0;
     let last = list.len() - 1;
@@ -30,11 +30,11 @@ fn every_method_of_a_list_has_its_turn() {
             }
         }
     }
-    // With limits each method is followed by another one.
+    // With pressure limits each method is followed by the projected Newton method.
     for method in [Method::Norm, Method::Multigrid, Method::FullMultigrid, Method::ProjectedCg] {
         assert_eq!(stages::<PressureLimit<'_>>(method, true, true).last(), Some(&Stage::ProjectedNewton));
     }
     let auto = stages::<NonNegative>(Method::Auto, true, false);
-    // Each has 0.4 of the remaining cycles, and the last one has the rest.
+    // Each method of AUTO gets 0.4 of the remaining cycles, and the last one the rest.
     assert_eq!(cycles::<NonNegative>(auto, 1000), [400, 240, 144, 216]);
 }

@@ -6,7 +6,8 @@ use super::{Asked, Kernels};
 use crate::grid::Grid;
 use crate::stress::Body;
 
-/// Corner differences of third derivatives at offset 16384 and depth 1e6 cancel: 200 bits would suffice.
+/// The precision of the reference in bits: corner differences of third derivatives at offset 16384 and depth 1e6 cancel, for which 200 bits would
+/// suffice.
 const BITS: usize = 256;
 const RM: RoundingMode = RoundingMode::ToEven;
 
@@ -115,7 +116,7 @@ fn reference([x, y, z]: [f64; 3], (dx, dy): (f64, f64), nu: f64, consts: &mut Co
     [pressure, in_x, in_y]
 }
 
-/// The largest error of a kernel at these offsets, relative to the largest component there of all three loads.
+/// The largest error of a kernel at these offsets, relative to the largest component of the stresses by all three loads there.
 fn error(element: (f64, f64), nu: f64, z: f64, size: (usize, usize), offsets: &[(usize, usize)]) -> f64 {
     let grid = Grid::new(1, 1, element.0, element.1).unwrap();
     let body = Body { grid, poisson_ratio: nu, periodic: false };

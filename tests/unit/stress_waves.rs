@@ -1,8 +1,8 @@
-//! Waves in lanes, compared with the library's exp.
+//! The decay factors of waves in SIMD lanes, compared with the standard library's exp.
 
 use super::{exp_of_minus, Fading, Lanes, LANES, NODES};
 
-/// The library's `exp` is within one unit of the last place. In addition there is round-off of the series, of its power and of the remainder.
+/// The standard library's `exp` is within one unit of the last place. The lanes add the round-off of the series, of its power and of the remainder.
 #[test]
 fn exp_of_minus_is_exp() {
     for step in 0..7000 {
@@ -15,7 +15,7 @@ fn exp_of_minus_is_exp() {
     assert_eq!(exp_of_minus(&[0.0; LANES]), [1.0; LANES]);
 }
 
-/// Nodes with negligible factors are not summed; the reference sums all, one by one. Weights are up to 252.
+/// The library leaves out nodes with negligible factors. The reference sums all nodes, one by one. Weights are up to 252.
 #[test]
 fn waves_near_the_surface_fade_as_at_the_nodes() {
     for z in [0.0, 1e-12, 0.3, 0.99] {
@@ -29,7 +29,8 @@ fn waves_near_the_surface_fade_as_at_the_nodes() {
                 let part = |j: usize| weights[j] * (-k[i] * (j + 1) as f64).exp();
                 let exact: f64 = (0..NODES).map(part).sum();
                 let of_depths: f64 = (0..NODES).map(|j| (j + 1) as f64 * part(j)).sum();
-                // Round-off of terms of up to 252, and 10 times that; the omitted terms are 1e-16, and 10 times that.
+                // 1e-13 is the round-off of terms of up to 252 and of the omitted terms, which are 1e-16. The sum of depths has terms ten times as
+                // large.
                 assert!((e[i] - exact).abs() <= 1e-13 && (ze[i] - of_depths).abs() <= 1e-12, "z {z}, k {}", k[i]);
             }
         }

@@ -1,9 +1,9 @@
-//! Structs of other versions: older programs on this library, and newer ones.
+//! Structs of the C ABI in other versions: older programs with this library, and programs of newer headers.
 #![allow(dead_code)] // some functions of the macro are not used
 
 use super::*;
 
-/// A struct in its first version, and in a later one.
+/// A struct in its first version. `contact_normal_later` is the same struct in a later version.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct contact_normal_first {
@@ -23,7 +23,7 @@ pub struct contact_normal_later {
 versioned! { contact_normal_first, first_init, 16, tolerance: 1e-6 }
 versioned! { contact_normal_later, later_init, 16, tolerance: 1e-6 }
 
-/// Memory of the caller, with its earlier contents.
+/// Memory of the caller, with the bytes that it had before.
 #[repr(C, align(8))]
 struct Room([u8; 64]);
 
@@ -90,7 +90,7 @@ fn a_struct_that_an_older_library_does_not_know_is_zero() {
 #[test]
 fn rows_are_as_far_apart_as_the_first_says() {
     let value = contact_normal_later { struct_size: 32, tolerance: 0.5, limit: 1.0, count: 2 };
-    // Older rows of 16 bytes, and rows of 24 bytes of a newer header.
+    // Rows of 16 bytes, as of an older header, and rows of 24 bytes, as of a newer one.
     for size in [16usize, 24] {
         let mut caller = room();
         // SAFETY (all): room for two rows of that size.

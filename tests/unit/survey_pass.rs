@@ -1,4 +1,5 @@
-//! A survey equals a loop over the elements. All values are whole numbers, so that sums are exact.
+//! A survey (the maxima and sums of a state that a certificate needs) equals a loop over the elements. All values are whole numbers, so that sums are
+//! exact.
 
 use super::super::certificate::Survey;
 use super::super::State;
@@ -8,7 +9,7 @@ use crate::threads::Threads;
 
 const APPROACH: f64 = 3.0;
 
-/// The kind of a random state. In all of them some elements have no surface, and the first 70 columns of wide grids have no pressure.
+/// The kinds of random states. In each of them some elements have no surface, and the first 70 columns of wide grids have no pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
     /// Pressures of either sign; u is NaN on elements without a surface.

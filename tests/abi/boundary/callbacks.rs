@@ -1,4 +1,5 @@
-//! A callback runs in the floating-point environment of the host. It may write into the caller's arrays, but not use the handle that is solving.
+//! A callback runs in the floating-point environment of the host program. It may write into the caller's arrays, but it may not use the handle that
+//! is solving.
 
 use std::hint::black_box;
 use std::ptr::{null, null_mut};
@@ -22,10 +23,10 @@ const UPWARD: c_int = 0x400000;
 #[cfg(target_arch = "aarch64")]
 const DOWNWARD: c_int = 0x800000;
 
-/// One third, rounded to nearest, which is downwards.
+/// One third, rounded to nearest, which here is downwards.
 const DOWN: f64 = 1.0 / 3.0;
 
-/// The rounding mode of double arithmetic, by computing. A library call might report that of another unit.
+/// The rounding mode of double arithmetic, found by computing. A function of the C library might report the mode of another unit.
 fn rounding() -> c_int {
     let third = |sign: f64| black_box(sign) / black_box(3.0);
     match (third(1.0) > DOWN, third(-1.0) < -DOWN) {
@@ -35,13 +36,13 @@ fn rounding() -> c_int {
     }
 }
 
-/// The state of a callback: what it records, and what it does.
+/// What a callback records, and what it does.
 struct Watch {
     /// The rounding mode at the beginning of each call.
     modes: Vec<c_int>,
-    /// The mode that the callback leaves set.
+    /// The rounding mode that the callback sets before it returns.
     leaves: c_int,
-    /// A solve inside it.
+    /// A solve that the callback makes.
     inner: Option<Call>,
 }
 
@@ -64,7 +65,7 @@ unsafe extern "C" fn progress(_: *const contact_normal_progress, user: *mut c_vo
 }
 
 unsafe extern "C" fn log(_: i32, _: *const c_char, user: *mut c_void) {
-    // SAFETY: the test's own; other tests of this process log too, from their threads.
+    // SAFETY: the test's own. Other tests of this process also log, from their threads.
     if WATCHED.get() {
         unsafe { &mut *user.cast::<Watch>() }.called();
     }
@@ -90,7 +91,7 @@ unsafe extern "C" fn surface(mx: i32, my: i32, dx: f64, dy: f64, h: *mut f64, us
     0
 }
 
-/// Runs a call in the mode DOWNWARD; returns the mode afterwards.
+/// Makes a call in the rounding mode DOWNWARD, and returns the mode after it.
 fn downward(call: impl FnOnce()) -> c_int {
     // SAFETY: the rounding mode of this thread, nearest (0) again before Rust computes.
     unsafe {
@@ -118,7 +119,7 @@ fn a_callback_runs_in_the_environment_of_the_host_and_changes_no_bit() {
             call.options.known.progress = Some(progress);
             call.options.known.user = (&raw mut watch).cast();
             let after = downward(|| solved(&mut call));
-            // The host has the mode that the callback left, in the next callback and after the call.
+            // The host has the mode that the callback set: in the next callback, and after the call.
             assert_eq!(watch.modes[0], DOWNWARD);
             assert!(watch.modes[1..].iter().all(|&mode| mode == leaves), "{:?}", watch.modes);
             assert_eq!(after, leaves);
@@ -134,7 +135,7 @@ fn a_callback_runs_in_the_environment_of_the_host_and_changes_no_bit() {
 }
 
 #[test]
-fn so_do_the_surface_and_the_log() {
+fn the_surface_and_the_log_run_in_the_environment_of_the_host() {
     let run = |watch: *mut Watch| {
         let mut call = Call::new();
         call.accuracy.known.surface = Some(surface);
@@ -172,7 +173,7 @@ fn so_do_the_surface_and_the_log() {
     assert_eq!(pressure, undisturbed.pressure);
 }
 
-/// Tries to use the handle that is solving.
+/// A callback that tries to use the handle that is solving.
 struct Misuse {
     handle: *mut contact_normal_solver,
     call: Call,
@@ -189,7 +190,7 @@ unsafe extern "C" fn misuse(_: *const contact_normal_progress, user: *mut c_void
         outcomes.push((contact_normal_solver_fields(*handle, &mut call.fields.known), last_error()));
         outcomes.push((contact_normal_solver_set_influence(*handle, &call.influence.known, null()), last_error()));
         outcomes.push((contact_normal_solver_free(*handle), last_error()));
-        // The callback may use another handle.
+        // The callback may use a handle of its own.
         let own = Handle::of(call);
         assert_eq!(call.run(Through::SolverSolve, own.0).0, CONTACT_NORMAL_OK);
     }
@@ -214,7 +215,7 @@ fn a_handle_that_is_solving_refuses_to_be_used_or_freed() {
         assert_refused(outcome, CONTACT_NORMAL_INVALID_ARGUMENT, &["solver", "in use", "callback"]);
     }
     assert_eq!(call.pressure, undisturbed.pressure);
-    // The handle still solves.
+    // The handle can still solve after the refused calls.
     call.options.known.progress = None;
     assert_eq!(call.run(Through::SolverSolve, handle.0), (CONTACT_NORMAL_OK, String::new()));
     assert_eq!(call.pressure, undisturbed.pressure);
@@ -252,7 +253,7 @@ fn what_the_effects_hold_is_read_before_a_callback_runs() {
     ];
     for (k, effect) in effects.into_iter().enumerate() {
         for through in [Through::Solve, Through::ToAccuracy] {
-            // An accuracy refuses own coefficients and values per element: it gets the plain scene.
+            // A search for an accuracy refuses the caller's coefficients and values per element. It gets the plain scene.
             let change = |call: &mut Call| {
                 if through == Through::Solve {
                     effect(call)

@@ -1,4 +1,4 @@
-//! The caller's own coefficients: their scale, other tables for a handle, and tables that a handle refuses.
+//! The caller's coefficients: their scale, another table for a handle, and tables that a handle refuses.
 
 use std::ptr::{null, null_mut};
 
@@ -16,7 +16,7 @@ fn set_influence(handle: &Handle, call: &Call) -> (i32, String) {
     (status, if status == CONTACT_NORMAL_OK { String::new() } else { last_error() })
 }
 
-/// A call with the table times `factor`, changed by `skew` so that it is neither even nor symmetric.
+/// A call with a table of the half-space times `factor`, changed by `skew` so that it is neither even nor symmetric.
 fn with_table(factor: f64, skew: f64) -> Call {
     let mut call = Call::new();
     call.use_table();
@@ -62,7 +62,7 @@ fn a_scale_that_is_none_is_refused() {
         call.use_row_tables().scale = scale;
         assert_refused(call.run(Through::Solve, null_mut()), status, &["row_tables", "scale", value]);
     }
-    // The product overflows.
+    // The product of coefficient and scale overflows.
     let mut call = Call::new();
     call.set_coefficient(1, 0, 1e300);
     call.use_table().scale = 1e300;
@@ -132,7 +132,7 @@ fn the_last_result_is_a_start_for_another_table() {
     let mut call = with_table(1.3, 0.0);
     call.options.known.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
     assert_eq!(call.run(Through::SolverSolve, handle.0), (CONTACT_NORMAL_OK, String::new()));
-    // e = h - approach + A p by direct summation, zero in contact within the tolerance relative to its size.
+    // e = h - approach + A p by direct sums is 0 in contact, within the tolerance relative to its size.
     let (mut squares, mut scale) = (0.0, 0.0);
     for i in (0..MX * MY).filter(|&i| call.contact[i] == 1) {
         let u = (0..MX * MY).map(|j| {
@@ -143,7 +143,7 @@ fn the_last_result_is_a_start_for_another_table() {
         squares += (distance + u.sum::<f64>()).powi(2);
         scale += distance.powi(2);
     }
-    // The tolerance, and round-off of sums of 30 terms.
+    // The tolerance of 1e-6, and the round-off of sums of 30 terms.
     assert!(scale > 0.0 && (squares / scale).sqrt() <= 1e-6 + 30.0 * f64::EPSILON, "{squares:e} {scale:e}");
 }
 
@@ -215,7 +215,7 @@ fn other_coefficients_than_those_of_the_handle_are_refused() {
         let mut other = Call::new();
         other.set_in_row(2, 1, 3, 1e-7);
         assert_refused(other.run(through, of_rows.0), CONTACT_NORMAL_INFLUENCE_CHANGED, &["row_tables", "other"]);
-        // Effects of a scene are also checked for a handle with its own coefficients.
+        // The effects of a scene are also checked for a handle that has the caller's coefficients.
         let mut bad = with_table(1.0, 0.0);
         bad.use_limit().limit = f64::NAN;
         assert_refused(bad.run(through, handle.0), CONTACT_NORMAL_NOT_FINITE, &["limit", "NaN"]);

@@ -24,7 +24,7 @@ fn without_fields_the_report_is_the_same() {
         );
         assert!(found.normal.force > 0.0 && call.pressure == before);
     }
-    // Arrays that are read must be given.
+    // Arrays that the call has to read must not be NULL.
     for (name, change) in [
         ("fields->contact", (|c: &mut Call| c.fix_contact()) as fn(&mut Call)),
         ("fields->pressure", |c| c.options.known.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_GIVEN),

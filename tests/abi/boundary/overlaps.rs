@@ -1,4 +1,4 @@
-//! The outputs of a call overlap with none of its other inputs and outputs, in every function.
+//! The outputs of a call must not overlap with any of its other inputs and outputs. Each function refuses this.
 
 use std::ptr::{null, null_mut};
 
@@ -17,7 +17,7 @@ type Row = (&'static [&'static str], fn(&mut Call));
 const ROWS: &[Row] = &[
     (&["pressure", "displacement"], |c| c.fields.known.displacement = c.fields.known.pressure),
     (&["pressure", "deformed_distance"], |c| c.fields.known.pressure = c.fields.known.deformed_distance),
-    // By one element, at either end.
+    // Arrays that overlap by one element, at either end.
     (&["pressure", "displacement"], |c| c.fields.known.pressure = c.fields.known.displacement.wrapping_add(N - 1)),
     (&["pressure", "deformed_distance"], |c| {
         c.fields.known.pressure = c.fields.known.deformed_distance.wrapping_add(N - 1);
@@ -25,7 +25,7 @@ const ROWS: &[Row] = &[
     }),
     (&["contact", "pressure"], |c| c.fields.known.contact = c.fields.known.pressure.cast::<i32>().wrapping_add(2 * N - 1)),
     (&["ledger", "pressure"], |c| c.fields.known.pressure = c.report.known.ledger.cast()),
-    // In its last row.
+    // An overlap with the last row of the ledger.
     (&["ledger", "contact"], |c| c.fields.known.contact = c.report.known.ledger.wrapping_add(4).cast::<i32>().wrapping_sub(1)),
     (&["report", "pressure"], |c| c.fields.known.pressure = (&raw mut c.report.known).cast()),
     (&["pressure", "undeformed_distance"], |c| c.fields.known.pressure = c.h.as_mut_ptr()),
@@ -36,7 +36,7 @@ const ROWS: &[Row] = &[
     (&["pressure", "factors"], |c| { c.use_patches(HALF); c.fields.known.pressure = c.factors.as_mut_ptr(); }),
     (&["pressure", "influence->coefficients"], |c| { c.use_table(); c.fields.known.pressure = c.table.as_mut_ptr(); }),
     (&["pressure", "row_tables->coefficients"], |c| { c.use_row_tables(); c.fields.known.pressure = c.tables.as_mut_ptr(); }),
-    // Structs that are const are never written.
+    // A struct that is passed as const is never written, so that no output may overlap with it.
     (&["pressure", "scene"], |c| c.fields.known.pressure = (&raw mut c.scene.known).cast()),
     (&["pressure", "options"], |c| c.fields.known.pressure = (&raw mut c.options.known).cast()),
     (&["pressure", "fields"], |c| c.fields.known.pressure = (&raw mut c.fields.known).cast()),
@@ -89,7 +89,7 @@ fn problems_of_a_batch_share_nothing_that_is_written() {
     // Two scenes may share inputs.
     calls[1].scene.known.undeformed_distance = calls[0].h.as_ptr();
     assert_eq!(batch(&calls, statuses).0, CONTACT_NORMAL_OK);
-    // An output of one problem is an input of the other.
+    // Refused: an output of one problem is an input of the other.
     calls[1].scene.known.undeformed_distance = calls[0].fields.known.pressure;
     assert_refused(batch(&calls, statuses), INVALID, &["pressure of problem 0", "undeformed_distance of problem 1"]);
     calls[1].scene.known.undeformed_distance = calls[1].h.as_ptr();
@@ -102,7 +102,7 @@ fn problems_of_a_batch_share_nothing_that_is_written() {
 
 #[test]
 fn the_other_calls_refuse_overlaps_too() {
-    // An accuracy within the first row of the ledger.
+    // Refused: the accuracy struct lies within the first row of the ledger.
     let mut call = Call::new();
     let mut both = [0u64; 64];
     let row = both.as_mut_ptr().cast::<contact_normal_ledger_row>();
@@ -132,8 +132,8 @@ fn the_other_calls_refuse_overlaps_too() {
     assert_refused((status, last_error()), INVALID, &["pressure", "displacement", "overlap"]);
 }
 
-/// Every placement of four arrays in a row of places of 8 bytes, compared with the definition of an overlap: distances (3 places, read), the factors
-/// of one patch (1 place, read), pressures (3 places, written) and the contact area (a place and a half, written).
+/// Every placement of four arrays in memory of 9 places of 8 bytes, compared with the definition of an overlap. The arrays are the distances (3
+/// places, read), the factor of one patch (1 place, read), pressures (3 places, written) and the contact area (a place and a half, written).
 #[test]
 fn what_is_written_overlaps_with_nothing() {
     const PLACES: usize = 9;
@@ -141,7 +141,7 @@ fn what_is_written_overlaps_with_nothing() {
     let mut refused = [0, 0];
     for k in 0..7 * PLACES * 7 * (PLACES - 1) {
         let (h, factor, pressure, contact) = (k % 7, k / 7 % PLACES, k / (7 * PLACES) % 7, k / (49 * PLACES));
-        // In halves of a place: start, end, whether it is written.
+        // Regions in halves of a place: start, end, and whether the array is written.
         let regions = [(h, 6, false), (factor, 2, false), (pressure, 6, true), (contact, 3, true)];
         let regions = regions.map(|(place, length, is_written)| (2 * place, 2 * place + length, is_written));
         let overlap = (0..4).any(|i| {

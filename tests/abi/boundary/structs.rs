@@ -1,11 +1,11 @@
-//! The sizes that programs of version 0.2 pass.
+//! The sizes of structs that programs of version 0.2 pass, and calls from a thread that is ending.
 
 use std::ptr::null_mut;
 
 use crate::call::{last_error, Call, Through};
 use contact_normal::ffi::*;
 
-/// The size of each struct in version 0.2, for ever.
+/// The size of each struct in version 0.2. These numbers never change.
 const SIZES: [(&str, i64); 13] = [
     ("scene", 168),
     ("influence", 32),
@@ -22,7 +22,7 @@ const SIZES: [(&str, i64); 13] = [
     ("accuracy", 112),
 ];
 
-/// The size that a struct of the call declares; the scene names it.
+/// The size that a struct of the call declares. The scene of the call then points to the struct.
 fn declared<'a>(call: &'a mut Call, name: &str) -> &'a mut i64 {
     match name {
         "scene" => &mut call.scene.known.struct_size,
@@ -59,7 +59,7 @@ fn a_struct_of_version_0_2_is_accepted_and_a_shorter_one_is_not() {
     }
 }
 
-/// A value whose destructor calls the library after other data of the thread are gone.
+/// A value whose destructor calls the library when other data of its thread are already destroyed.
 struct AtTheEnd;
 
 impl Drop for AtTheEnd {
@@ -82,7 +82,7 @@ thread_local! {
 #[test]
 fn a_thread_that_is_ending_may_still_call() {
     let thread = std::thread::spawn(|| {
-        // Destructors run in the reverse order of first use.
+        // Destructors run in the reverse order of first use, so that the library's data of the thread are destroyed first.
         AT_THE_END.with(|_| {});
         // SAFETY: NULL is refused.
         let status = unsafe { contact_normal_solve(null_mut(), null_mut(), null_mut(), null_mut()) };

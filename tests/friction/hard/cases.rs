@@ -1,4 +1,4 @@
-//! The cases: two like bodies, E* = G/(1 - nu), with a load and a motion.
+//! The hard cases: two like bodies, with E* = G/(1 - nu), under a load and a motion.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Coefficient, Friction, Load, Motion, Prescribed, Previous, Scene};
@@ -12,7 +12,7 @@ pub const MOTIONS: [(&str, Motion); 3] = [
     ("STEADY_ROLLING", Motion::SteadyRolling),
 ];
 
-/// A pair of arrays, in x and in y.
+/// Two arrays: the components in x and in y of each element.
 type Pair = [Vec<f64>; 2];
 
 /// A scene that owns its arrays.
@@ -26,15 +26,15 @@ pub struct Case {
     pub mu: Vec<f64>,
     pub prescribed: [Prescribed; 2],
     pub spin: f64,
-    /// The tractions before the step.
+    /// The previous tractions.
     pub previous: Option<Pair>,
     pub rigid_slip: Option<Pair>,
-    /// The status that it is refused with; none: it has to be solved.
+    /// The status with which the library must refuse the case. `None`: the library must solve it.
     pub refusal: Option<&'static str>,
 }
 
 impl Case {
-    /// Creepages that leave a part of the ball sticking.
+    /// A case with mu = 0.3 and creepages at which a part of the contact sticks.
     fn new(name: &'static str, grid: Grid, h: Vec<f64>, load: Load) -> Case {
         let mu = vec![0.3; grid.len()];
         let prescribed = [Prescribed::Creepage(-0.1), Prescribed::Creepage(0.05)];
@@ -42,7 +42,7 @@ impl Case {
         Case { name, grid, h, nu: 0.3, load, mu, prescribed, spin: 0.05, previous, rigid_slip, refusal }
     }
 
-    /// A ball of radius 1 on a plane, the radius of contact about 1, on 31 x 31 elements.
+    /// A ball of radius 1 on a plane, pressed to a contact radius of about 1, on 31 x 31 elements of side 0.08.
     fn ball(name: &'static str) -> Case {
         let square = grid(31, 31, 0.08, 0.08);
         Case::new(name, square, paraboloid(&square, 0.5), Load::Approach(1.0))
@@ -56,7 +56,7 @@ impl Case {
         Bodies::same(1.0, self.nu)
     }
 
-    /// The scene of the library.
+    /// The library's scene of the case, with one of the motions.
     pub fn scene(&self, motion: Motion) -> Scene<'_> {
         let friction = Friction {
             coefficient: Coefficient::PerElement(&self.mu),
@@ -154,7 +154,7 @@ fn motions() -> Vec<Case> {
 }
 
 fn with_forces() -> Vec<Case> {
-    // The ball presses with 10, so mu N is 3.
+    // The normal force is 10, so that mu N is 3.
     let of = |name, prescribed, spin| Case { load: Load::Force(10.0), prescribed, spin, ..Case::ball(name) };
     let beside = [Prescribed::Creepage(-1e-11), Prescribed::Force(1.5)];
     vec![

@@ -14,7 +14,7 @@ use contact_normal::solver::{solve, Options, Outcome};
 
 use super::cases::Case;
 
-/// Tractions of more than this part of the bound slip (docs/friction.md).
+/// Elements whose traction exceeds this part of the bound count as slipping (docs/friction.md).
 const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
 
 /// Round-off of coefficients, transforms and sums in a displacement, relative to the sum of absolute values.
@@ -27,7 +27,7 @@ pub enum Verdict {
     Solved { residual: f64, products: f64 },
     /// Status OK, but the conditions do not hold.
     Wrong { residual: f64, products: f64, why: String },
-    /// Another status.
+    /// The solve ended with another status than OK.
     Stopped { outcome: Outcome, residual: f64, products: f64 },
     /// Refused with the expected status.
     Refused(&'static str),
@@ -58,7 +58,7 @@ fn coefficients(case: &Case, x: f64, y: f64) -> [f64; 3] {
     [(1.0 - case.nu) * a + b, a + (1.0 - case.nu) * b, case.nu * c]
 }
 
-/// Displacements by tractions, at distances `ahead` in x of the centres.
+/// Displacements caused by tractions q, at places that are `ahead` in x of the centres of elements.
 fn displace(case: &Case, q: &[Vector], ahead: f64) -> Vec<Vector> {
     let (mx, my) = (case.grid.mx as i64, case.grid.my as i64);
     let reach = |m: i64| 1 - m..m;
@@ -87,14 +87,14 @@ fn rigid_slip(case: &Case, motion: Motion, i: usize, creepage: Vector) -> Vector
     [distance * (creepage[0] - case.spin * y) + own[0], distance * (creepage[1] + case.spin * x) + own[1]]
 }
 
-/// The residual of the slip, relative, and its possible round-off.
+/// The rms residual of the slip relative to its scale, and the round-off that it may have.
 fn residual(case: &Case, motion: Motion, g: &[f64], q: &[Vector], creepage: Vector) -> (f64, f64) {
     let is_steady = motion == Motion::SteadyRolling;
     let given = |i: usize| case.previous.as_ref().map_or([0.0; 2], |before| [before[0][i], before[1][i]]);
     let before: Vec<Vector> = if is_steady { q.to_vec() } else { (0..q.len()).map(given).collect() };
     let u = displace(case, q, 0.0);
     let u_before = displace(case, &before, if motion == Motion::Shift { 0.0 } else { case.grid.dx });
-    let [mut left, mut rigid, mut displaced] = [const { Vec::new() }; 3];
+    let [mut residuals, mut rigid, mut displaced] = [const { Vec::new() }; 3];
     let mut largest = 0.0f64;
     for i in (0..q.len()).filter(|&i| g[i] > 0.0) {
         let w = rigid_slip(case, motion, i, creepage);
@@ -106,7 +106,7 @@ fn residual(case: &Case, motion: Motion, g: &[f64], q: &[Vector], creepage: Vect
             let along = (s[0] * outward[0] + s[1] * outward[1]).min(0.0);
             rest = [0, 1].map(|k| s[k] - along * outward[k]);
         }
-        left.push(length(rest));
+        residuals.push(length(rest));
         rigid.push(length(w));
         displaced.push(length(if is_steady { [0, 1].map(|k| u[i][k] - u_before[i][k]) } else { u[i] }));
     }
@@ -114,14 +114,14 @@ fn residual(case: &Case, motion: Motion, g: &[f64], q: &[Vector], creepage: Vect
     let scale = match motion {
         Motion::Shift => rms(&rigid).max(rms(&displaced)),
         Motion::SteadyRolling if has_forces => rms(&rigid).max(rms(&displaced)),
-        // In slow rolling the scale is the round-off of the displacements.
+        // In slow rolling the scale is at least the root of the machine epsilon, 1.5e-8, times the displacements.
         _ => rms(&rigid).max(f64::EPSILON.sqrt() * rms(&displaced)),
     };
     let part = |value: f64| if value == 0.0 { 0.0 } else { value / scale };
-    (part(rms(&left)), part(ROUND_OFF * largest))
+    (part(rms(&residuals)), part(ROUND_OFF * largest))
 }
 
-/// The first bound or force that does not hold, in words.
+/// Describes the first bound or prescribed force that does not hold. `None`: all of them hold.
 fn broken(case: &Case, g: &[f64], q: &[Vector]) -> Option<String> {
     if let Some(i) = (0..q.len()).find(|&i| !(length(q[i]) <= g[i])) {
         return Some(format!("element {i}: {:?} beyond {}", q[i], g[i]));

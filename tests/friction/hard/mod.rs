@@ -1,4 +1,4 @@
-//! The hard cases of friction, also for docs/reliability_friction.md, and their promised results.
+//! The hard cases of friction and the results that the library promises for them. docs/reliability_friction.md lists the same cases.
 
 pub mod cases;
 pub mod certificate;

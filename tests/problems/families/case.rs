@@ -1,4 +1,4 @@
-//! A hard case: a scene that owns its arrays. Also the shapes that the families share.
+//! A hard case: a scene that owns its arrays. Also the shapes of surfaces that the families share.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, Table};
@@ -17,7 +17,7 @@ pub struct Case {
     pub bodies: Bodies,
     /// Prescribed approach or force.
     pub load: Load,
-    /// Own coefficients instead of the half-space.
+    /// The caller's coefficients instead of those of the half-space.
     pub influence: Option<Table>,
 }
 
@@ -28,7 +28,7 @@ impl std::fmt::Debug for Case {
 }
 
 impl Case {
-    /// A case of a rigid body and one with E* = 1.
+    /// A case with a rigid body on one with E* = 1.
     pub fn new(name: &str, grid: Grid, h: Vec<f64>, load: Load) -> Case {
         Case { name: name.into(), grid, h, bodies: rigid_on(1.0), load, influence: None }
     }
@@ -55,7 +55,7 @@ pub fn centre(grid: &Grid, i: usize) -> (f64, f64) {
     (from_middle(i % grid.mx, grid.mx, grid.dx), from_middle(i / grid.mx, grid.my, grid.dy))
 }
 
-/// The distances by a function of the position.
+/// The undeformed distances at the centres of the elements.
 pub fn distance(grid: &Grid, h: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     (0..grid.len()).map(|i| centre(grid, i)).map(|(x, y)| h(x, y)).collect()
 }
@@ -65,7 +65,7 @@ pub fn paraboloid(grid: &Grid, curvature: f64) -> Vec<f64> {
     distance(grid, |x, y| curvature * (x * x + y * y))
 }
 
-/// A table of the size of the grid, `change(kx, ky, coefficient of the half-space with E* = 1)`.
+/// A table of the size of the grid with the coefficients `change(kx, ky, c)`, where c is the coefficient of the half-space with E* = 1.
 pub fn table(grid: &Grid, change: impl Fn(i64, i64, f64) -> f64) -> Table {
     let half_space = HalfSpace::new(grid.dx, grid.dy, rigid_on(1.0).compliance());
     let (cx, cy) = (grid.mx as i64, grid.my as i64);

@@ -1,4 +1,4 @@
-//! The certificate, recomputed from the returned arrays with the test's own product.
+//! The measures of the certificate, recomputed from the returned arrays with the test's own product.
 
 use contact_normal::contact::State;
 use contact_normal::error::Result;
@@ -11,7 +11,8 @@ use contact_normal::threads::Threads;
 use super::case::Case;
 use crate::dense;
 
-/// Grids up to this size are summed directly, larger ones by an FFT in double precision (tests/problems/operator.rs compares both).
+/// The product of grids of at most this many elements is a direct sum, that of larger ones an FFT in double precision (tests/problems/operator.rs
+/// compares both).
 const SUMMED: usize = 1600;
 
 /// The result of a solve.
@@ -29,7 +30,7 @@ impl Found {
     }
 }
 
-/// The recomputed measures.
+/// The measures of the certificate, recomputed from a result.
 #[derive(Clone, Copy, Debug)]
 pub struct Recomputed {
     /// `||h - approach + A p|| / ||h - approach||` over C.
@@ -39,29 +40,29 @@ pub struct Recomputed {
     /// `sum of p |e| / sum of p |u|`.
     pub complementarity: f64,
     #[allow(dead_code)] // for tests/problems/properties.rs
-    /// The energy `(p, A p)/2 + (p, h - approach)`; with a prescribed force without the approach.
+    /// The energy `(p, A p)/2 + (p, h - approach)`; if the force is given, `(p, A p)/2 + (p, h)`.
     pub energy: f64,
-    /// The possible round-off of the first two measures.
+    /// The round-off that the first two measures may have.
     pub round_off: f64,
 }
 
-/// Solves a case by one method with the default options.
+/// Solves a case by one method, with the default options otherwise.
 pub fn run(case: &Case, method: Method) -> Result<Found> {
     run_with(case, &Options { method, ..Options::default() })
 }
 
-/// Solves a case.
+/// Solves a case with these options.
 pub fn run_with(case: &Case, options: &Options) -> Result<Found> {
     let (solver, stop, report) = solve(&case.scene(), options)?;
     Ok(found(&solver, stop, report))
 }
 
-/// The result that a solver holds.
+/// The last result of a solver.
 pub fn found(solver: &Solver, stop: Outcome, report: Report) -> Found {
     Found::of(stop, report, solver.state())
 }
 
-/// u = A p.
+/// The displacements u = A p of a case, by a product of the test.
 pub fn displace(case: &Case, p: &[f64]) -> Vec<f64> {
     let influence: Coefficients = case.scene().coefficients().unwrap();
     let mut u = vec![0.0; p.len()];
@@ -74,7 +75,7 @@ pub fn displace(case: &Case, p: &[f64]) -> Vec<f64> {
     u
 }
 
-/// Recomputes the measures.
+/// Recomputes the measures of a result. Asserts that exterior elements carry no pressure and that elements in contact have a surface.
 pub fn recompute(case: &Case, found: &Found) -> Recomputed {
     let u = displace(case, &found.p);
     let (mut r2, mut h2, mut outside, mut gaps, mut work, mut count) = (0.0, 0.0, 0.0f64, 0.0, 0.0, 0.0f64);
@@ -103,12 +104,12 @@ pub fn recompute(case: &Case, found: &Found) -> Recomputed {
         violation: part(outside, scale),
         complementarity: part(gaps, work),
         energy,
-        // A product has an error of some units of round-off of its largest value, and so has the difference h - approach.
+        // A product has an error of some units of round-off of its largest value, and so has the difference h - approach; 64 units are ample.
         round_off: part(64.0 * f64::EPSILON * (largest + found.approach.abs()), scale),
     }
 }
 
-/// Asserts the promises for any status: finite values, no tension, the prescribed force, and a report that agrees with the arrays.
+/// Asserts what the library promises for any status: finite values, no tension, the prescribed force, and a report that agrees with the arrays.
 pub fn assert_sound(case: &Case, what: &str, found: &Found) -> Recomputed {
     let name = format!("{}, {what}, {:?}", case.name, found.stop);
     assert!(found.p.iter().all(|p| p.is_finite() && *p >= 0.0), "{name}: pressures");
@@ -116,13 +117,13 @@ pub fn assert_sound(case: &Case, what: &str, found: &Found) -> Recomputed {
     let measures = recompute(case, found);
     let force = found.p.iter().sum::<f64>() * case.grid.element_area();
     if let Load::Force(prescribed) = case.load {
-        // A sum of n terms of one sign, taken in another order.
+        // The tolerance is the round-off of a sum of n terms of one sign, in any order.
         let rounding = f64::EPSILON * case.grid.len() as f64;
         assert!((force - prescribed).abs() <= rounding * prescribed, "{name}: force {force} for {prescribed}");
     }
     let reported = found.report.measures;
     let certificate = reported.certificate;
-    // Two products of the same pressures differ by round-off.
+    // The test's and the library's products of the same pressures differ by round-off.
     let agree = |a: f64, b: f64| (a - b).abs() <= measures.round_off + 1e-9 * a.abs();
     assert!(agree(certificate.residual, measures.residual), "{name}: reported {certificate:?}, found {measures:?}");
     assert!(agree(certificate.complementarity, measures.complementarity), "{name}: {certificate:?}, {measures:?}");
@@ -134,7 +135,7 @@ pub fn assert_sound(case: &Case, what: &str, found: &Found) -> Recomputed {
     measures
 }
 
-/// Asserts the promise of status OK: residual, violation and complementarity are at most `tolerance`.
+/// Asserts what status OK promises: residual, violation and complementarity are at most `tolerance`, but for round-off.
 pub fn assert_certified(case: &Case, what: &str, found: &Found, tolerance: f64) -> Recomputed {
     assert_eq!(found.stop, Outcome::Converged, "{}, {what}: {:?}", case.name, found.report);
     let measures = assert_sound(case, what, found);
@@ -144,7 +145,7 @@ pub fn assert_certified(case: &Case, what: &str, found: &Found, tolerance: f64) 
     measures
 }
 
-/// Solves every case by every method: AUTO must solve it, and the others must solve it or have another status.
+/// Solves every case by every method. AUTO must solve it; the other methods must either solve it or return another status.
 pub fn assert_solved_or_told(cases: &[Case]) {
     for case in cases {
         for method in [Method::Auto, Method::FullMultigrid, Method::Multigrid, Method::Norm] {

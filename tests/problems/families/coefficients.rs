@@ -1,11 +1,11 @@
-//! The caller's coefficients: for any of them the right answer or a status.
+//! The caller's coefficients: any of them lead to the right answer or to a status.
 
 use contact_normal::influence::Kernel;
 use contact_normal::scene::Load;
 
 use super::case::{distance, grid, table, Case};
 
-/// A name, and the coefficient at an offset in elements, from that of the half-space.
+/// A name, and a function of the offset in elements and of the half-space's coefficient there, which returns the changed coefficient.
 type Change = (&'static str, fn(i64, i64, f64) -> f64);
 
 fn radius(kx: i64, ky: i64) -> f64 {
@@ -17,16 +17,16 @@ const DEFINITE: &[Change] = &[
     ("not symmetric", |kx, _, c| c * (1.0 + 0.05 * kx.signum() as f64)),
     ("far from symmetric", |kx, ky, c| c * (1.0 + 0.5 * kx.signum() as f64 - 0.3 * ky.signum() as f64)),
     ("one-sided", |kx, ky, c| if ky < 0 || (ky == 0 && kx < 0) { 0.0 } else { c }),
-    // Full contact of 4 x 3.2 has a compliance of about 1/(2.2 * 1.8) per force, 0.0025 per pressure on 0.01, so that A - 0.001 * 1 1' is
-    // still positive definite.
+    // Full contact on 4 x 3.2 has a compliance of about 1/(2.2 * 1.8) per force. An element of area 0.01 has 0.0025 per pressure, more than 0.001, so
+    // that A - 0.001 * 1 1' is still positive definite.
     ("negative far entries", |_, _, c| c - 0.001),
-    // A sum of 1 1' and a multiple of the identity.
+    // A is the sum of 1 1' and a multiple of the identity.
     ("hardly decaying", |kx, ky, _| if (kx, ky) == (0, 0) { 1.1 } else { 1.0 }),
-    // Fourier transforms of r^-a and exp(-r) are positive in the plane.
+    // r^-a and exp(-r) have positive Fourier transforms in the plane.
     ("decaying slowly", |kx, ky, _| (1.0 + radius(kx, ky)).powf(-0.3)),
     ("decaying fast", |kx, ky, _| (-2.0 * radius(kx, ky)).exp()),
     ("diagonal", |kx, ky, c| if (kx, ky) == (0, 0) { c } else { 0.0 }),
-    // Normals that rotate along x: c cos(angle) is positive definite because c and cos are.
+    // As for normals that rotate along x. The product c cos(angle) is positive definite because both factors are.
     ("conformal", |kx, _, c| c * (0.06 * kx as f64).cos()),
     ("conformal, and stiffer to one side", |kx, ky, c| c * (0.06 * kx as f64).cos() * (1.0 + 0.02 * ky as f64 / 40.0)),
     ("of single precision", |_, _, c| f64::from(c as f32)),
@@ -34,7 +34,7 @@ const DEFINITE: &[Change] = &[
     ("minute", |_, _, c| 1e-100 * c),
 ];
 
-/// Changes with which the energy is unbounded below in some direction, at least on some contact areas.
+/// Changes that make the energy unbounded below in some direction, at least on some contact areas.
 const INDEFINITE: &[Change] = &[
     ("negative neighbours", |kx, ky, _| match radius(kx, ky) {
         0.0 => 1.0,
@@ -62,7 +62,7 @@ fn of(changes: &[Change]) -> Vec<Case> {
     let mut cases = Vec::new();
     for (name, change) in changes {
         let influence = table(&grid, change);
-        // Loads for coefficients of order 1e100.
+        // Coefficients of order 1e100 need forces of order 1e-100.
         let unit = influence.at(0, 0) / 0.1;
         let unit = if (1e-50..=1e50).contains(&unit) { 1.0 } else { unit };
         for load in [Load::Approach(0.04), Load::Force(0.1 / unit)] {
@@ -76,7 +76,7 @@ pub fn cases() -> Vec<Case> {
     of(DEFINITE)
 }
 
-/// Coefficients of no elastic body: a certified answer or a status.
+/// Cases with coefficients that no elastic body has. They must end with a certified answer or with a status.
 pub fn indefinite() -> Vec<Case> {
     of(INDEFINITE)
 }

@@ -7,10 +7,10 @@ use contact_normal::scene::Load;
 
 use super::case::{grid, table, Case};
 
-/// Coefficients at offsets 0, 1, 2, ... and approach - h.
+/// The coefficients at offsets 0, 1, 2, ... of a row, and approach - h of its elements.
 type Row = (&'static [f64], &'static [f64]);
 
-/// Found by a search through random coefficients and distances.
+/// The rows were found by a search through random coefficients and distances.
 const ROWS: &[Row] = &[
     (&[1.0, -0.92, 0.77], &[0.64, -0.91, 0.1]),
     (&[1.0, -0.9, 0.98], &[0.41, -0.8, 0.32]),
@@ -19,7 +19,7 @@ const ROWS: &[Row] = &[
     (&[1.0, -0.52, 0.98], &[0.66, -0.82, 0.87]),
 ];
 
-/// Each row by itself, and `copies` of it, too far apart to interact.
+/// Cases with one copy of each row, and with 40 copies that are too far apart to interact.
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for (coefficients, depths) in ROWS {
@@ -48,7 +48,7 @@ mod promises {
     use contact_normal::error::Error;
     use contact_normal::solver::{Method, Options, Outcome};
 
-    /// Solves on C by elimination: `A p = 1 - h` there.
+    /// Solves `A p = 1 - h` on the contact area by elimination.
     fn solve_on(case: &Case, contact: &[bool]) -> Vec<f64> {
         let influence = case.scene().coefficients().unwrap();
         let elements: Vec<usize> = (0..contact.len()).filter(|&i| contact[i]).collect();
@@ -130,7 +130,7 @@ mod promises {
         assert!(solved > 50 && refused > 5, "{solved} and {refused}");
     }
 
-    /// Whether the matrix with diagonal 1 and these coefficients is positive definite: the pivots of Cholesky's method are positive.
+    /// Whether the matrix with diagonal 1 and these coefficients is positive definite, that is, whether Cholesky's method finds positive pivots.
     fn is_definite(coefficients: &[f64]) -> bool {
         let m = coefficients.len() + 1;
         let at = |i: usize, k: usize| if i == k { 1.0 } else { coefficients[i.abs_diff(k) - 1] };

@@ -22,7 +22,7 @@ pub fn cases() -> Vec<Case> {
         // An ellipsoid with the height 1 at the middle of the sides; the approach is a third of it.
         let (a, b) = (0.5 * mx as f64 * dx, 0.5 * my as f64 * dy);
         let h = distance(&grid, |x, y| (x / a).powi(2) + (y / b).powi(2));
-        // A force with about the same contact: E* sqrt(area) * depth.
+        // A force that has about the same contact area: E* sqrt(area) * depth.
         let force = 0.3 * (a * b).sqrt() * 0.3;
         for load in [Load::Approach(0.3), Load::Force(force)] {
             cases.push(Case::new(name, grid, h.clone(), load));

@@ -1,4 +1,4 @@
-//! Initial guesses: a bad one may cost time, but the answer is the same.
+//! Initial guesses. A bad guess may cost time, but leads to the same result.
 
 use contact_normal::scene::Load;
 
@@ -49,7 +49,7 @@ mod promises {
     const METHODS: [Method; 5] =
         [Method::Auto, Method::FullMultigrid, Method::Multigrid, Method::Norm, Method::ProjectedCg];
 
-    /// Solves from a guess by every method: the pressures are those of a solve without a guess.
+    /// Solves from each guess by every method, and asserts that the pressures are those of a solve without a guess.
     fn no_guess_changes_the_answer(case: &Case, guesses: &[(&str, Vec<f64>, Vec<bool>)]) {
         for method in METHODS {
             let options = Options { method, tolerance: 1e-9, max_cycles: 5000, ..Options::default() };
@@ -61,7 +61,7 @@ mod promises {
                 let (stop, report) =
                     solver.solve(&case.scene(), &options, Some(Guess { pressure, contact }), None).expect("a solve");
                 let found = found(&solver, stop, report);
-                // Also if no iteration was needed.
+                // The certificate must hold even if no iteration was needed.
                 assert_certified(case, &format!("{method:?} from {name}"), &found, options.tolerance);
                 for (p, q) in found.p.iter().zip(&cold.p) {
                     // Both residuals are at most 1e-9; the condition number of A on this grid is below 100.
@@ -111,9 +111,9 @@ mod promises {
                         found(&solver, stop, report)
                     };
                     let again = from(&exact.p);
-                    // With UPDATE at 1e-8 the residual is at most about 1e-8: A is well scaled on the solution.
+                    // With the UPDATE criterion at 1e-8 the residual is about 1e-8 or less, because A is well scaled on the solution. 1e-7 is ample.
                     assert_certified(&case, &format!("{method:?} from the solution"), &again, 1e-7);
-                    // Multigrid needs a V-cycle or two to measure the update; conjugate gradients measure the residual first.
+                    // Multigrid needs one or two V-cycles to measure the update. Conjugate gradients measure the residual first.
                     assert!(again.report.count.cycles <= 4, "{method:?}: {} cycles", again.report.count.cycles);
                     let bent: Vec<f64> = exact.p.iter().enumerate().map(|(i, p)| p * [1.01, 0.99][i % 2]).collect();
                     let other = from(&bent);

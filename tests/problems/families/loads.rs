@@ -1,4 +1,4 @@
-//! Prescribed forces of every size, and approach and force that belong together.
+//! Prescribed forces of every size, and pairs of approach and force that belong together.
 
 use contact_normal::scene::Load;
 
@@ -46,13 +46,13 @@ mod promises {
         for method in METHODS {
             let refused = run(&Case::new("no surface", grid, nowhere.clone(), Load::Force(1.0)), method).err();
             assert!(matches!(refused, Some(Error::Infeasible(_))), "{method:?}: {refused:?}");
-            // One element left carries any force.
+            // A single element that is not excluded carries any force.
             let mut h = nowhere.clone();
             h[77] = 0.0;
             let case = Case::new("one element", grid, h, Load::Force(1.0));
             let found = run(&case, method).expect("a solve");
             assert_certified(&case, "one element", &found, 1e-6);
-            // Two roundings.
+            // A quotient and a product: two rounding errors.
             assert!((found.p[77] * grid.element_area() - 1.0).abs() <= 2.0 * f64::EPSILON);
         }
     }

@@ -1,4 +1,5 @@
-//! The families of hard cases. Each file has the cases of a family, which docs/reliability_table.md lists too, and the tests of their promises.
+//! The families of hard cases. Each file has the cases of one family, which docs/reliability_table.md lists, too, and the tests of what the library
+//! promises for them.
 
 pub mod case;
 pub mod certificate;

@@ -1,4 +1,4 @@
-//! Solves that stop early: the result is sound, and the status names the cause.
+//! Solves that stop early. The result is sound, and the status names the cause.
 
 use contact_normal::scene::Load;
 
@@ -29,8 +29,8 @@ mod promises {
                     let found = run_with(&case, &options).expect("a solve");
                     let what = format!("{method:?} {criterion:?}");
                     let measures = assert_sound(&case, &what, &found);
-                    // The round-off of one product is about 1e-15 u. That of p is larger by up to the condition number of A, about a hundred. A few
-                    // hundred products add theirs.
+                    // The round-off of one product is about 1e-15 u. That of p is larger by up to the condition number of A, about a hundred, and a
+                    // few hundred products add their round-off: 1e-12 in all.
                     assert!(measures.residual <= 1e-12, "{what}: {measures:?}");
                     let floor_or_exact = found.stop == Outcome::Stagnated
                         || criterion == Criterion::Update && found.stop == Outcome::Converged;
@@ -42,7 +42,7 @@ mod promises {
 
     #[test]
     fn norm_below_round_off_ends_with_the_contact_area_found() {
-        // Also periodic scenes, whose directions have a mean by round-off, and tables that are not symmetric.
+        // Among the cases are periodic scenes, whose search directions have a mean by round-off, and unsymmetric tables.
         let shaped = [super::super::surfaces::cases(), super::super::coefficients::cases()].concat();
         let shaped =
             shaped.into_iter().chain(super::super::contact_areas::cases()).filter(|case| case.grid.len() < 4000);
@@ -52,7 +52,7 @@ mod promises {
             let options = Options { method: Method::Norm, tolerance: 1e-30, max_cycles: 20_000, ..Options::default() };
             let found = run_with(&case, &options).expect("a solve");
             let measures = assert_sound(&case, "NORM below round-off", &found);
-            // Contact areas of few elements are solved to the last bit, and converge.
+            // If the contact area has few elements, the solve reaches the last bit and converges.
             assert!(
                 [Outcome::Stagnated, Outcome::Converged].contains(&found.stop),
                 "{}: {:?}",
@@ -62,7 +62,7 @@ mod promises {
             stagnated += usize::from(found.stop == Outcome::Stagnated);
             assert!(measures.residual <= 1e-12 && measures.violation <= 1e-12, "{}: {measures:?}", case.name);
         }
-        // Most cases stagnate at round-off. Whether the others do depends on the order of sums.
+        // Most cases stagnate at round-off. For some it depends on the order of sums whether they do.
         assert!(4 * stagnated > 3 * total, "{stagnated} of {total} stagnated");
     }
 
@@ -76,10 +76,11 @@ mod promises {
                 let options = Options { method: Method::ProjectedCg, max_cycles, ..Options::default() };
                 let found = run_with(&case, &options).expect("a solve");
                 let energy = recompute(&case, &found).energy;
-                // The round-off of the energy, a sum of thousands of terms of similar size, is about 1e-14.
+                // The energy is a sum of thousands of terms of similar size, with a round-off of about 1e-14.
                 if energy - last > 1e-12 * energy.abs() {
-                    // By approach a truncation may cost more energy than its line search gains, up to 1e-6; the next step regains it. By force p is
-                    // scaled after each truncation: up to 3.5e-3 in an early iteration on the needle. The latter depends on the preconditioner.
+                    // With a given approach a truncation of negative pressures may cost more energy than its line search gains, up to 1e-6; the next
+                    // step regains it. With a given force p is scaled after each truncation, which costs up to 3.5e-3 in an early iteration on the
+                    // needle. The latter number depends on the preconditioner.
                     let is_force = matches!(case.load, Load::Force(_));
                     risen.push((case.name.clone(), is_force));
                     let most = if is_force { 4e-3 } else { 1e-5 };
@@ -92,7 +93,7 @@ mod promises {
             }
             count += 1;
         }
-        // By approach there is one increase, of 1e-6 of the energy; by force there are three, all on the needle.
+        // Measured: one increase by approach, of 1e-6 of the energy, and three by force, all on the needle.
         let (by_force, by_approach): (Vec<_>, Vec<_>) = risen.into_iter().partition(|(_, is_force)| *is_force);
         assert!(count > 50 && by_approach.len() <= 2, "of {count}: {by_approach:?}");
         let is_needle = |name: &str| name.contains("needle");
@@ -141,7 +142,7 @@ mod promises {
                         solver.solve(&case.scene(), &options, None, Some(&mut cancel)).expect("a solve");
                     assert_eq!(calls, at, "{method:?}: called after the cancellation");
                     let (what, found) = (format!("{method:?}, cancelled at {at}"), found(&solver, stop, report));
-                    // The iterate at the cancellation may satisfy the certificate already.
+                    // At the cancellation the iterate may already satisfy the certificate.
                     if stop == Outcome::Converged {
                         assert_certified(&case, &what, &found, options.tolerance);
                     } else {
@@ -149,7 +150,7 @@ mod promises {
                         assert_sound(&case, &what, &found);
                     }
                 }
-                // After cancellations the handle still solves.
+                // The handle can still solve after cancellations.
                 let (stop, report) = solver.solve(&case.scene(), &options, None, None).expect("a solve");
                 assert_certified(&case, "after cancellations", &found(&solver, stop, report), options.tolerance);
             }

@@ -13,7 +13,7 @@ pub fn cases() -> Vec<Case> {
     let checked = |i: usize| (i % 64 + i / 64) % 2 == 1;
 
     let board: Vec<f64> = (0..square.len()).map(|i| if checked(i) { 0.3 } else { 0.0 }).collect();
-    // With the first load only the deep elements touch, with the second all.
+    // Under the first load only the high elements touch, under the second one all of them.
     add("checkerboard", square, board.clone(), &[Load::Approach(0.1), Load::Approach(2.0), Load::Force(0.5)]);
     let hollow: Vec<f64> =
         paraboloid(&square, 0.05).iter().zip(&board).map(|(h, step)| h + 1e-3 * step / 0.3).collect();
@@ -40,7 +40,7 @@ pub fn cases() -> Vec<Case> {
         .collect();
     add("10^4 islands", islands, h, &[Load::Approach(0.4)]);
 
-    // Single elements 16 apart in a plane: means over 2 x 2 lose 3/4 of their depth on each grid.
+    // Single high elements, 16 elements apart: on each coarser grid the means over 2 x 2 elements lose 3/4 of their height.
     let wide = grid(130, 120, 0.1, 0.1);
     let h = (0..wide.len()).map(|i| if (i % 130) % 16 == 7 && (i / 130) % 16 == 9 { 0.0 } else { 1.0 }).collect();
     add("islands that no coarse grid sees", wide, h, &[Load::Approach(0.2), Load::Force(0.2), Load::Approach(1.5)]);
@@ -82,7 +82,7 @@ mod promises {
     fn ten_thousand_islands_are_apart() {
         let case = cases().into_iter().find(|case| case.name == "10^4 islands").expect("the case");
         let found = run(&case, Method::Auto).expect("a solve");
-        // Islands: elements in contact whose block of 4 x 4 has no other in contact at its rim.
+        // An island is a block of 4 x 4 elements with contact in its middle and without contact at its corners.
         let touched = (0..10_000).filter(|&k| {
             let inside = |x: usize, y: usize| found.contact[(k / 100 * 4 + y) * 400 + k % 100 * 4 + x];
             let corner = inside(0, 0) || inside(3, 0) || inside(0, 3) || inside(3, 3);

@@ -1,4 +1,4 @@
-//! The same problem in other units, and with all distances scaled: the same digits; the same bits where the factor is a power of 2.
+//! The same problem in other units, and with all distances scaled, gives the same digits, and the same bits if the factors are powers of two.
 
 use contact_normal::scene::{Bodies, Load};
 
@@ -13,8 +13,8 @@ fn steel(load: Load) -> Case {
 
 const LOADS: [Load; 2] = [Load::Approach(0.015), Load::Force(8000.0)];
 
-/// In a unit of length of which one mm is `length`, and a unit of pressure of which one MPa is `pressure`; with all distances,
-/// pressures and the approach times `scale`.
+/// The case in a unit of length of which one mm is `length`, and in a unit of pressure of which one MPa is `pressure`. All distances, pressures and
+/// the approach are multiplied by `scale`.
 fn converted(case: &Case, name: &str, length: f64, pressure: f64, scale: f64) -> Case {
     let grid = grid(case.grid.mx, case.grid.my, case.grid.dx * length, case.grid.dy * length);
     let bodies = Bodies { shear_modulus: case.bodies.shear_modulus.map(|g| g * pressure), ..case.bodies };
@@ -26,7 +26,7 @@ fn converted(case: &Case, name: &str, length: f64, pressure: f64, scale: f64) ->
     Case { bodies, ..Case::new(name, grid, h, load) }
 }
 
-/// Name, length, pressure, scale.
+/// Each: a name, and the factors `length`, `pressure` and `scale`.
 const UNITS: [(&str, f64, f64, f64); 5] = [
     ("m, Pa", 1e-3, 1e6, 1.0),
     ("nm, GPa", 1e6, 1e-3, 1.0),
