@@ -188,7 +188,7 @@ def owned(value: Any) -> Any:
     """A copy, for callers may change their lists and arrays. Strings of numpy, which are arrays too, become plain ones."""
     if isinstance(value, str):
         return str(value)
-    if isinstance(value, np.ma.MaskedArray) or hasattr(value, "dims"):
+    if isinstance(value, np.ma.MaskedArray) or hasattr(value, "dims") and hasattr(value, "copy"):
         # The mask and the names of the dimensions are checked later.
         return value.copy()
     if isinstance(value, memoryview) or hasattr(value, "__array__"):

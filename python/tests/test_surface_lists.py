@@ -97,6 +97,16 @@ class Lists(unittest.TestCase):
             with self.assertWarnsRegex(UserWarning, "the unit in the line 'mm\tmm\tum' is not read"):
                 surface.read(path)
 
+    def test_points_without_a_height_are_no_header(self):
+        x, y, z = self.columns
+        z = np.where(y == y.min(), -np.nan, z)
+        for end, word in ((".txt", "-nan"), (".tsv", "-nan"), (".asc", "inf"), (".xyz", "+nan")):
+            path = self.path.with_suffix(end)
+            order = np.argsort(y, kind="stable")
+            path.write_text("".join(f"{x[k]} {y[k]} {word if np.isnan(z[k]) else format(z[k], '.17g')}\n" for k in order))
+            found = surface.read(path)
+            self.assertEqual((found.z.shape, int((~np.isfinite(found.z)).sum())), ((7, 9), 9), end)
+
     def test_options_that_a_list_contradicts_are_refused(self):
         for end in (".txt", ".xyz"):
             path = self.path.with_suffix(end)

@@ -70,6 +70,12 @@ class Heights(unittest.TestCase):
                     path.write_text("\n".join([*header, *map(tab.join, cells)]))
                     with self.assertRaisesRegex(ValueError, f"line {row + 5} has '.*' among its numbers"):
                         surface.read(path)
+                # Units over the columns, places of columns with a word, and comments are lines of a header; "infinite" is a hole.
+                for above in (["um " * 7], ["y\\x 0 0.5 1 1.5 2 2.5"], ["Measured 2024 1 15 12 30 by hand"]):
+                    path.write_text("\n".join([*header, *above, *map(tab.join, plain)]))
+                    self.assertEqual(surface.read(path).z.shape, (5, 7))
+                path.write_text("\n".join([*header, *map(tab.join, plain)]).replace(plain[0][3], "infinite"))
+                self.assertEqual(int(np.isnan(surface.read(path).z).sum()), 1)
                 path.write_text("\n".join([*header, "# 1 2 3 4 5 6 7", *map(tab.join, plain)]), encoding="utf-8-sig")
                 made = surface.read(path)
                 self.assertEqual((made.z.shape, made.units, round(made.dx, 9)), ((5, 7), ("um", "N"), 1.0))

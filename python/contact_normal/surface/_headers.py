@@ -24,7 +24,7 @@ def head_of(path: str | os.PathLike[str]) -> str:
 
 
 # A number, also with a decimal comma or an exponent of Fortran, or a hole.
-_NUMBER = re.compile(r'"?(?:[-+]?[.,]?\d[\d.,]*(?:[eEdD][-+]?\d+)?|nan)"?', re.IGNORECASE)
+_NUMBER = re.compile(r'"?[-+]?(?:[.,]?\d[\d.,]*(?:[eEdD][-+]?\d+)?|nan|inf(?:inity)?)"?', re.IGNORECASE)
 
 
 def count_above(head: str) -> int:

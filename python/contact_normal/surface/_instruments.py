@@ -13,6 +13,9 @@ from typing import Any
 from .._texts import starts_with_mark, text_of
 from ._texts import refuse_skipped_rows
 
+# Texts that SurfaceTopography reads as maps; others may be binary.
+_TEXTS = ".asc", ".xyz", ".tsv"
+
 # What is said of files and topographies without sizes; the command line looks for it.
 NO_SIZE = "does not say the size of an element: give size, the lengths of the field, or dx and dy"
 
@@ -32,8 +35,8 @@ def of_instrument(path: str | os.PathLike[str], end: str, variable: str | None, 
         open_topography = importlib.import_module("SurfaceTopography").open_topography
     except ImportError as error:
         raise ImportError(f"{error}; files {end or 'without an end'} need SurfaceTopography: pip install 'contact-normal[surface]'") from error
-    is_marked = Path(path).is_file() and starts_with_mark(path)
-    with _tried(lambda: open_topography(io.StringIO(text_of(path)) if is_marked else os.fspath(path)), path) as reader:
+    is_marked = end in _TEXTS and Path(path).is_file() and starts_with_mark(path)
+    with _tried(lambda: open_topography(io.StringIO(text_of(path), newline=None) if is_marked else os.fspath(path)), path) as reader:
         if reader.format() == "asc":
             refuse_skipped_rows(path)
         which = _channel(reader, variable, end, path)

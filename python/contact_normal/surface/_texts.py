@@ -59,8 +59,10 @@ def refuse_skipped_rows(path: str | os.PathLike[str]) -> None:
     for k, (row, count) in enumerate(zip(rows, counts)):
         if not row or row[0].startswith("#") and row[0] != "#N/A":
             continue
-        is_row = len(row) == width and (full[0] < k < full[-1] or len(set(row)) == 1)
-        if count < len(row) and (2 * count >= width or is_row):
+        is_among = full[0] < k < full[-1]
+        is_row = len(row) == width and (is_among or len(set(row)) == 1)
+        has_holes_alone = all(_is_number(cell) or _HOLE.fullmatch(cell) for cell in row)
+        if count < len(row) and (2 * count >= width or is_row) and (is_among or has_holes_alone):
             word = next(cell for cell in row if not _is_number(cell))
             raise ValueError(f"{path}: line {k + 1} has {word!r} among its numbers; write nan where nothing was measured, and comments on lines of their own")
 
@@ -68,13 +70,16 @@ def refuse_skipped_rows(path: str | os.PathLike[str]) -> None:
 # Rows of fewer numbers may be lines of a header.
 _LEAST_WIDTH = 4
 
+# Words that stand for holes, and damaged numbers. Above and below the numbers, lines with other words are those of a header.
+_HOLE = re.compile(r"[-+]?[\d.].*|[-*?_]+|#?n/?[av]|#\w.*|[-+]?nan\(.*\)|none|null|no|data|nodata|missing|void|invalid", re.IGNORECASE)
+
 
 def _is_number(cell: str) -> bool:
     """Whether SurfaceTopography reads a cell as a number or as a hole."""
     try:
         float(cell)
     except ValueError:
-        return cell.lower() == "bad"
+        return cell.lower() in ("bad", "infinite")
     return True
 
 
