@@ -60,8 +60,9 @@ const TARGETS: [Target; 19] = [
     target(GROWTH, "1.12", 1.08, false, "exponent"),
 ];
 
-/// The target of time steps also demands that steps take at most this number of products in at least this number of the cases.
-const STEP: (f64, usize) = (5.0, 5);
+/// The target of time steps also demands that a step takes at most this number of products in at least [`CASES_OF_SHORT_STEPS`] cases.
+const SHORT_STEP: f64 = 5.0;
+const CASES_OF_SHORT_STEPS: usize = 5;
 
 static MEASURED: Mutex<Vec<(&str, f64)>> = Mutex::new(Vec::new());
 
@@ -100,9 +101,9 @@ pub fn print() {
         let mut now = if values.len() == 1 { shown(*worst) } else { format!("{} .. {}", shown(*best), shown(*worst)) };
         let mut met = if *at_least { worst >= wanted } else { worst <= wanted };
         if [STEPS, STEPS_OLD].contains(work) {
-            let few = values.iter().filter(|value| **value <= STEP.0).count();
-            now += &format!("; at most {} in {few} of {} cases", STEP.0, values.len());
-            met &= few >= STEP.1;
+            let few = values.iter().filter(|value| **value <= SHORT_STEP).count();
+            now += &format!("; at most {SHORT_STEP} in {few} of {} cases", values.len());
+            met &= few >= CASES_OF_SHORT_STEPS;
         }
         let sign = if *at_least { "at least" } else { "at most" };
         println!("| {work} | {before} | {now} | {sign} {wanted} {unit} | {} |", if met { "met" } else { "MISSED" });

@@ -264,8 +264,8 @@ pub fn growth(threads: usize, sizes: &[usize]) {
         }
         calls.push((m, call));
     }
-    if let [first, .., last] = &calls[..] {
-        let exponent = (last.1 / first.1).ln() / (2.0 * (last.0 as f64 / first.0 as f64).ln());
+    if let [(first_size, first_call), .., (last_size, last_call)] = &calls[..] {
+        let exponent = (last_call / first_call).ln() / (2.0 * (*last_size as f64 / *first_size as f64).ln());
         summary::note(summary::GROWTH, exponent);
     }
 }

@@ -110,10 +110,10 @@ fn main() {
     let mut times = ROWS.map(|_| (Vec::new(), Vec::new()));
     let mut reports = Vec::new();
     for repeat in 0..REPEATS {
-        for (scene, times) in scenes.iter().zip(&mut times) {
+        for (scene, (setup_times, solve_times)) in scenes.iter().zip(&mut times) {
             let (seconds, report) = call(scene);
-            times.0.push(report.setup_seconds);
-            times.1.push(seconds - report.setup_seconds);
+            setup_times.push(report.setup_seconds);
+            solve_times.push(seconds - report.setup_seconds);
             if repeat == 0 {
                 reports.push(report);
             }
