@@ -1,4 +1,4 @@
-"""Prints the tables of docs/accuracy.md and docs/notes/2026-11-accuracy.md from what `cargo run --release --example accuracy` wrote.
+"""Prints the tables of docs/accuracy.md and docs/notes/2026-11-accuracy.md from the file that `cargo run --release --example accuracy` wrote.
 
     accuracy.py accuracy.csv
 """
@@ -23,7 +23,7 @@ TARGETS = ((1e-2, "1 %"), (1e-3, "0.1 %"), (1e-4, "0.01 %"))
 
 
 def price(rows, case, target):
-    """The coarsest grid from which on the error stays below the target, with a tolerance of a tenth of it."""
+    """The row of the coarsest grid with an error below the target on this and all finer grids, with a tolerance of a tenth of the target."""
     some = [r for r in rows if r["case"] == case and r["method"] == "Auto"]
     on_grid = {m: min((r for r in some if r["mx"] == m), key=lambda r: r["tolerance"]) for m in {r["mx"] for r in some}}
     enough = [m for m in sorted(on_grid) if all(on_grid[n]["error"] <= target for n in on_grid if n >= m)]

@@ -1,8 +1,11 @@
-"""The material of the contact-mechanics challenge (Müser et al. 2017) on self-affine surfaces of our own: `adhesion_challenge.py [--largest 2048] [picture.png]`.
+"""Solves the material of the contact-mechanics challenge (Müser et al. 2017) on self-affine surfaces that this script makes.
 
-E* = 25 MPa, a work of adhesion of 50 mJ/m^2, the exponential law, a mean pressure of 250 kPa, 0.1 mm x 0.1 mm with two periods, Hurst exponent
-0.8, rms slope 1 with waves from 20 um down to 4 elements. The challenge's range of 2.071 nm needs elements of about 2 nm; on coarser ones the range is the
-shortest that they carry. One line per grid: range, kappa, contact area, adhesive over total force, products, bytes an element, seconds.
+    adhesion_challenge.py [--largest 2048] [picture.png]
+
+E* = 25 MPa, a work of adhesion of 50 mJ/m^2, the exponential law, a mean pressure of 250 kPa. The surfaces are 0.1 mm x 0.1 mm large, with two
+periods, a Hurst exponent of 0.8 and an rms slope of 1, with waves from 20 um down to 4 elements. The range of the challenge, 2.071 nm, needs
+elements of about 2 nm; on coarser elements the range is the shortest that they resolve. Prints one line per grid: range, kappa, contact area,
+adhesive over total force, products, bytes per element, seconds.
 """
 
 import argparse
@@ -24,7 +27,7 @@ LONGEST, HURST, RANGE = 20.0, 0.8, 2.071e-3  # um
 
 
 def surface(n, seed=1):
-    """Heights in um: flat spectrum down to LONGEST, then self-affine to four elements."""
+    """Heights in um, whose spectrum is flat for waves longer than LONGEST, and self-affine for shorter ones down to four elements."""
     k = np.fft.fftfreq(n, SIDE / n)
     number = np.hypot(k[:, None], k[None, :])
     inside = (number > 0) & (number <= n / (4 * SIDE))
@@ -35,7 +38,7 @@ def surface(n, seed=1):
 
 
 def main():
-    """The table, and the picture of the largest grid."""
+    """Prints the table, and draws the result on the largest grid."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--largest", type=int, default=2048)
     parser.add_argument("picture", nargs="?")
@@ -62,7 +65,7 @@ def main():
 
 
 def draw(found, picture):
-    """Where they touch, and where they pull."""
+    """Draws the pressures of the whole surface and of a part: positive where the bodies press, negative where they pull at each other."""
     import matplotlib
 
     matplotlib.use("Agg")

@@ -1,8 +1,9 @@
-"""Rough surfaces from weak to sticky: `adhesion_rough.py [--largest 512]`.
+"""Solves rough surfaces with weak to strong adhesion: `adhesion_rough.py [--largest 512]`.
 
-A unit cell with two periods, E* = 1, waves 4 to 16, Hurst exponent 0.8, rms slope 0.1; the exponential law with kappa = 0.25; the force is given. The work of
-adhesion is a part of the elastic energy of full contact, which is `E*/4 sum of k |h_k|^2` per area (Johnson 1985, section 13.2). One line per load: the
-contact area and the adhesive over the total force on 128 x 128 elements, products on each grid, largest residual, all from the reports.
+The surface is a unit square with two periods, waves of 4 to 16 per side, a Hurst exponent of 0.8 and an rms slope of 0.1. E* = 1, and the law is
+exponential with kappa = 0.25. The force is given. The work of adhesion is a part of the elastic energy of full contact, which is
+`E*/4 sum of k |h_k|^2` per area (Johnson 1985, section 13.2). Prints one line per load, with values of the reports: the contact area and the
+adhesive over the total force on 128 x 128 elements, the products on each grid, and the largest residual.
 """
 
 import argparse
@@ -20,7 +21,7 @@ import numpy as np  # noqa: E402
 import contact_normal  # noqa: E402
 
 KAPPA, FEWEST, MOST, SLOPE = 0.25, 4, 16, 0.1
-# Of an element of side 1 on itself, times E*: Love 1929.
+# The displacement, times E*, of a square element of side 1 by a unit pressure on itself (Love 1929).
 SELF_INFLUENCE = 4 / np.pi * np.arcsinh(1.0)
 
 
@@ -42,7 +43,7 @@ def surface(n, seed=3):
 
 
 def main():
-    """The table."""
+    """Prints the table."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--largest", type=int, default=512)
     sizes = [n for n in (128, 256, 512) if n <= parser.parse_args().largest]
@@ -59,7 +60,7 @@ def main():
 
 
 def solve(n, pressure, part):
-    """One grid: the range is that of kappa, so it changes with the grid."""
+    """Solves the surface on a grid of n x n elements. The range follows from kappa, and so changes with the grid."""
     heights, energy = surface(n)
     work = part * energy
     reach = np.sqrt(work * SELF_INFLUENCE / n / KAPPA)

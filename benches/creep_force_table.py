@@ -1,11 +1,11 @@
-"""The yardstick of tables: 25 a/b x 16 xi x 16 eta x 32 phi = 204800 ellipses of 35 x 35 elements, each with its error estimate.
+"""Measures a table of creep forces: 25 a/b x 16 xi x 16 eta x 32 phi = 204800 entries for ellipses of 35 x 35 elements, with estimated errors.
 
     python benches/creep_force_table.py [--sample 0.01] [--workers 2] [--elements 35] [--path table.nc]
     python benches/creep_force_table.py --errors
 
-With `--sample` a part of the planes, spread over the whole table, is solved and the time of the whole is extrapolated. `--errors`
-compares the estimated errors of 1782 entries with those to finer grids. Needs numpy and the
-library (`CONTACT_NORMAL_LIBRARY`, or an installed package).
+With `--sample` only a part of the planes, spread over the whole table, is solved, and the time of the whole table is extrapolated. `--errors`
+compares the estimated errors of 1782 entries with the differences from the limit of two finer grids. Needs numpy and the library
+(`CONTACT_NORMAL_LIBRARY`, or an installed package).
 """
 
 import argparse
@@ -18,7 +18,7 @@ import numpy as np
 import contact_normal as cn
 from contact_normal._creep_force_plane import Plan, plane
 
-# From Kalker's linear theory to full slip; denser where forces bend.
+# The axes reach from Kalker's linear theory to full slip. Values are denser where the creep curves bend.
 AXES = {
     "axis_ratio": np.geomspace(0.1, 10.0, 25),
     "xi": 2.0 * np.linspace(0.0, 1.0, 16) ** 2,
@@ -32,11 +32,11 @@ def seconds_of_processes():
 
 
 def sample(part, workers, elements):
-    """Seconds and results of a part of the planes."""
+    """Solves a part of the planes. Returns the seconds, the part of all planes that this was, and the results."""
     axes = {name: tuple(float(value) for value in values) for name, values in AXES.items()}
     plan = Plan(poisson_ratio=(0.28,), elements=elements, tolerance=1e-4, **axes)
     count = max(1, round(part * plan.planes))
-    # A stride that has no factor in common with the 32 values of phi.
+    # The planes are spread over the table. The shifts by multiples of 13 avoid that all of them have the same of the 32 values of phi.
     chosen = [(k * plan.planes) // count + (k * 13) % max(1, plan.planes // count) for k in range(count)]
     began = time.monotonic()
     with concurrent.futures.ProcessPoolExecutor(workers) as pool:
@@ -45,14 +45,14 @@ def sample(part, workers, elements):
 
 
 def errors(workers, elements):
-    """By how much the estimated errors exceed those to the limit of two finer grids."""
+    """Prints the estimated errors beside the true ones, which are the differences from the limit of two finer grids."""
     axes = {"xi": [0.0, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.2], "phi": [0.0, 0.1, 0.2, 0.4, 0.8, 1.5],
             "eta": [-0.6, -0.4, -0.2, -0.1, 0.0, 0.1, 0.2, 0.4, 0.6], "axis_ratio": [0.25, 1.0, 3.3]}
     table, fine, finest = (cn.creep_force_table(elements=m, workers=workers, **axes) for m in (elements, 2 * elements, 3 * elements))
     forces, moments = [], []
     for name, into in (("force_x", forces), ("force_y", forces), ("moment", moments)):
         two, three = getattr(fine, name), getattr(finest, name)
-        limit = three + 2.0 * (three - two)  # first order: 3 h and 2 h
+        limit = three + 2.0 * (three - two)  # Richardson's extrapolation at first order, from elements of 1/2 and 1/3 of the size
         into.append(getattr(table, name) - limit)
     for what, off in (("force", np.hypot(*forces)), ("moment", np.abs(moments[0]))):
         part = off / table.error

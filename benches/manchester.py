@@ -1,8 +1,9 @@
-"""The Manchester contact benchmark beside the results that the CONTACT program prints for its left wheel: `manchester.py`.
+"""Compares this library on the Manchester contact benchmark with the results that the program CONTACT prints for the left wheel: `manchester.py`.
 
-An S1002 wheel on a UIC 60 rail, 10 kN on each wheel, in seven positions of the wheelset: simulation A-2.2 of Shackleton and Iwnicki, Vehicle System
-Dynamics 46 (2008). The profiles are made of their definitions, not read: the lines, arcs and polynomials of EN 13715 (S1002), and the arcs of a rail
-head. One line per position: what this library finds, and behind it what CONTACT prints. Lengths are in mm, forces in N, angles in rad.
+An S1002 wheel is on a UIC 60 rail with 10 kN on each wheel, in seven positions of the wheelset: simulation A-2.2 of Shackleton and Iwnicki,
+Vehicle System Dynamics 46 (2008). The profiles are computed from their definitions: the lines, arcs and polynomials of EN 13715 (S1002), and the
+arcs of the rail head. Prints one line per position, with the results of this library and those of CONTACT. Lengths are in mm, forces in N, angles
+in rad.
 """
 
 import math
@@ -10,7 +11,7 @@ import os
 import sys
 from typing import NamedTuple
 
-# A test imports this file, with a package and a library of its own.
+# A test also imports this file, and then chooses the package and the library itself.
 if __name__ == "__main__":
     ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
     os.environ.setdefault("CONTACT_NORMAL_LIBRARY", os.path.join(ROOT, "target", "release", "libcontact_normal.so"))
@@ -26,7 +27,8 @@ ELEMENT = 0.2
 
 
 class Printed(NamedTuple):
-    """A row that CONTACT prints: the position, and the patch of the left wheel."""
+    """A row that CONTACT prints: the position of the wheelset, and of the contact of the left wheel the force, the largest pressure, the number of
+    elements and the approach."""
 
     y: float
     z: float
@@ -48,23 +50,23 @@ PRINTED = (
     Printed(10.0, -8.2662, -0.01126, 0.024, 10020, 744.0, 515, 0.02511),
 )
 
-# The parts of S1002 from the tread to the flange back. Those of a tuple of coefficients are polynomials of y.
+# The parts of the S1002 profile from the tread to the flange back. LINE and POLYNOMIAL have the coefficients of 1, y, y^2, ... of z.
 LINE_A = (1.364323640, -0.066666667)
 POLYNOMIAL_B = (0.0, -3.358537058e-2, 1.565681624e-3, -2.810427944e-5, 5.844240864e-8, -1.562379023e-8, 5.309217349e-15, -5.957839843e-12,
                 2.646656573e-13)
 POLYNOMIAL_C = (-4.320221063e3, -1.038384026e3, -1.065501873e2, -6.051367875, -2.054332446e-1, -4.169739389e-3, -4.687195829e-5, -2.252755540e-7)
 LINE_E = (-93.576667419, -2.747477419)
-# y and z of the middle, radius, and whether the arc lies above the middle (-1, hollow) or below it, as z grows downwards.
+# Each arc has the y and z of its centre, its radius, and its side: -1 if the arc lies above the centre (z grows downwards), 1 if it lies below.
 ARC_D, ARC_F, ARC_G, ARC_H = (
     (-26.210665, 16.446, 13.0, -1), (-58.558326413, 8.834924130, 20.0, 1), (-55.0, 16.0, 12.0, 1), (-49.5, 9.519259302, 20.5, 1))
-# Each part holds down to its first number.
+# The parts in the order of decreasing y. Each holds for y above its first number and below that of the part before it.
 PARTS = ((32.15796, LINE_A), (-26.0, POLYNOMIAL_B), (-35.0, POLYNOMIAL_C), (-38.426669071, ARC_D), (-39.764473993, LINE_E),
          (-49.662510381, ARC_F), (-62.764705882, ARC_G), (-70.0, ARC_H))
 ARCS = (ARC_D, ARC_F, ARC_G, ARC_H)
 
 
 def height(part, y):
-    """z of a part of S1002."""
+    """z of a part of S1002 at y."""
     if part in ARCS:
         middle, above, radius, side = part
         return above + side * np.sqrt(np.maximum(radius**2 - (y - middle) ** 2, 0.0))
@@ -72,16 +74,16 @@ def height(part, y):
 
 
 def s1002(step=0.2):
-    """The wheel: y from the tape circle to the field side, z downwards."""
+    """The profile of the wheel. y is 0 at the tape circle and grows to the field side; z is downwards."""
     y = np.linspace(-69.9, 60.0, round(129.9 / step) + 1)
     z = np.select([y > end for end, _ in PARTS], [height(part, y) for _, part in PARTS])
     return profiles.Profile(y, z, "wheel", "S1002")
 
 
 def uic60(step=0.2):
-    """The rail, upright: arcs of 300, 80 and 13 mm that pass into each other and into flanks of 1:20, 72 mm apart where the arcs end.
+    """The profile of the rail without inclination: arcs with radii of 300, 80 and 13 mm with common tangents, and flanks of 1:20.
 
-    The benchmark's arc of 300 mm is 21 mm wide, where drawings of UIC 60 have 20.456 mm.
+    The flanks are 72 mm apart where the arcs end. The arc of 300 mm is 21 mm wide as in the benchmark; in drawings of UIC 60 it is 20.456 mm wide.
     """
     flank = math.atan(20.0)
     first = math.asin(10.5 / 300.0)
@@ -100,32 +102,32 @@ def uic60(step=0.2):
 
 
 def position(row):
-    """The position of a row. CONTACT yaws a wheelset before it rolls it, `Position` rolls it first: angles with the same direction of the axle."""
+    """The position of a row. CONTACT applies the yaw before the roll, and `Position` the roll first. The angles give the axle the same direction."""
     roll = math.asin(math.cos(row.yaw) * math.sin(row.roll))
     yaw = math.atan2(math.sin(row.yaw), math.cos(row.yaw) * math.cos(row.roll))
     return profiles.Position(row.y, row.z, roll, yaw)
 
 
 def contact_point(row):
-    """Where the left wheel touches the rail, canted by 1:40."""
+    """The point at which the left wheel touches the rail, which is inclined by 1:40."""
     track = profiles.Track(uic60(), gauge=1435.0, gauge_height=14.0, inclination=math.atan(1.0 / 40.0))
     wheelset = profiles.Wheelset(s1002(), radius=460.0, flange_back=1360.0, flange_back_at=-70.0)
     return profiles.contact_points(track, wheelset, position(row), side="left")[0]
 
 
 def pressed(point, row):
-    """The result under the printed force, and the approach from where the bodies touch."""
+    """The result under the printed force, and the approach from the position in which the bodies just touch."""
     gap = point.gap(ELEMENT, ELEMENT, 1.2 * row.approach)
     h = point.distance(gap.x, gap.y)
     result = contact_normal.solve(h, ELEMENT, ELEMENT, force=row.force, **STEEL)
     if result.status != contact_normal.OK:
         sys.exit(f"y = {row.y}: stopped early: {result.message}")
-    # Of a position that overlaps, h begins below 0.
+    # In a position with an overlap the least h is negative. The approach is converted to that from the first contact.
     return result, result.approach - point.clearance * math.cos(point.angle)
 
 
 def main():
-    """The table."""
+    """Prints the table."""
     print("| y | largest pressure | printed | | elements | printed | approach | printed | overlap of the position |")
     print("|---|---|---|---|---|---|---|---|---|")
     for row in PRINTED:

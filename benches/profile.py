@@ -1,6 +1,6 @@
-"""Where the time of a solve goes: `python3 benches/profile.py`, after `cargo bench --no-run`; needs Linux' perf.
+"""Measures which parts of a solve take how much of its time: `python3 benches/profile.py`, after `cargo bench --no-run`; needs perf of Linux.
 
-Samples the stacks of a process that solves the same problem again and again, and sorts them by what the solve was doing.
+perf samples the stacks of a process that repeats the same solve. The samples are counted by the part of the solve to which their functions belong.
 """
 
 import collections
@@ -20,7 +20,8 @@ RUNS = [
     ("rough", "512", "steps"),
 ]
 SECONDS = "8"
-# The first that some function of the stack matches.
+# The parts of a solve with patterns of their functions. A sample belongs to the first part whose pattern matches a function of the stack; those of the
+# first part, "", are not counted.
 PARTS = [
     ("", r"performance::case|heights|wheel_rail\b"),
     ("report", r"close_grid|Measures"),
@@ -37,7 +38,7 @@ PARTS = [
 
 
 def stacks(data):
-    """One text per sample."""
+    """The stacks of the samples, one text per sample."""
     script = subprocess.run(["perf", "script", "-i", data, "-F", "ip,sym"], capture_output=True, text=True, check=True)
     return [stack for stack in script.stdout.split("\n\n") if stack.strip()]
 

@@ -1,4 +1,5 @@
-"""The figures of docs/smoothers.md's text, from its table: `smoothers.py [docs/smoothers.md]`, after `cargo run --release --example smoothers` renewed it."""
+"""Prints the numbers in the text of docs/smoothers.md from its table: `smoothers.py [docs/smoothers.md]`. `cargo run --release --example smoothers`
+writes the table."""
 
 import re
 import statistics
@@ -6,7 +7,7 @@ import sys
 
 
 def rows(path):
-    """Surface, whether C is given, cycle, and for both smoothers cycles and seconds."""
+    """Yields for each row of the table the surface, whether the contact area C is given, the cycle, and the four numbers of each of both smoothers."""
     with open(path, encoding="utf-8") as file:
         for line in file:
             found = re.match(r"(ellipse|rough) (\d+)(, C given)? (V\(\d,\d\)) +(.*)", line)
@@ -16,7 +17,7 @@ def rows(path):
 
 
 def main(path):
-    """Ratios of seconds, and ranges of cycles."""
+    """Prints the ratios of the seconds of both smoothers, and the ranges of the numbers of cycles."""
     table = list(rows(path))
     ratios = {
         "the ellipse": [fft[3] / gs[3] for surface, _, _, gs, fft in table if surface == "ellipse"],

@@ -1,4 +1,4 @@
-"""Steps of a body that relaxes, beside tamaas (MaxwellViscoelastic, backward Euler): `build/peers/bin/python benches/visco_tamaas.py
+"""Compares time steps of a viscoelastic body with tamaas (MaxwellViscoelastic, backward Euler): `build/peers/bin/python benches/visco_tamaas.py
 [ELEMENTS]`, after `make bench-peers` or with tamaas installed."""
 
 import os
@@ -27,7 +27,7 @@ def gap():
 
 
 def coefficients():
-    """Those of tamaas: of points, not of elements, on a period; 2 p/(E* k) for each wave."""
+    """The influence coefficients of tamaas: those of points, not of elements, on one period. A wave of pressure p displaces by 2 p/(E* k)."""
     k = 2 * np.pi * np.fft.fftfreq(N, DX)
     k = np.hypot(k[:, None], k[None, :])
     wave = np.where(k > 0, (1 - NU) / G / np.where(k > 0, k, 1), 0)
@@ -65,8 +65,8 @@ for solve in (own, theirs):
     found.append(solve())
     seconds.append(time.perf_counter() - began)
 off = max(np.abs(p - q).max() / q.max() for p, q in zip(*found))
-# Pressures agree to their tolerances: of 1e-12 each, of the residual and not of pressures; so 1e-10 on 128 x 128, and more on more elements. From there on
-# the set-up counts little.
+# The largest allowed difference of the pressures, and the least ratio of the times. Both programs have tolerances of 1e-12 for residuals; the pressures
+# then agree to 1e-10 on 128 x 128 elements, and less well on more. The time is checked from 128 x 128 on, where the set-up counts little.
 AGREE, FASTER = (1e-10, 10.0) if N <= 128 else (1e-9, 10.0)
 print(f"{N} x {N} elements, {STEPS} steps: pressures differ by {off:.1e} of the largest; {seconds[0]:.3f} s, tamaas {seconds[1]:.3f} s")
 if not off < AGREE:

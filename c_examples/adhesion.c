@@ -1,13 +1,14 @@
-/* Effect `adhesion`: a sphere that sticks to a plane, its force on the way closer and back beside that of Johnson, Kendall and Roberts, and the
-   pull-off; then a rough surface that repeats itself, from weak to sticky. Units of the sphere: R = 1, w = 1/pi, E* = 3/4, in which forces
-   are in pi w R, and JKR pulls off at -1.5. */
+/* Effect `adhesion`: a sphere that adheres to a plane comes closer and goes back. Its forces are compared with those of Johnson, Kendall and
+   Roberts (JKR), and its pull-off force is found. Then a periodic rough surface is solved with weak to strong adhesion. With R = 1, w = 1/pi and
+   E* = 3/4 of the sphere forces are in pi w R, and the pull-off force of JKR is -1.5. */
 #include <math.h>
 
 #include "example.h"
 
 enum { M = 48, N = 32, STEPS = 12, WAVES = 6 };
 
-/* The force of JKR at an approach a^2 - 2/3 sqrt(6 a): a^3 - sqrt(6 a^3), by halving the radius of contact a from its least on. */
+/* The force of JKR at a given approach. With the contact radius a the approach is a^2 - 2/3 sqrt(6 a), and the force a^3 - sqrt(6 a^3). a is
+   found by bisection, from the radius of least approach on. */
 static double jkr(double approach)
 {
     double low = pow(6.0, -1.0 / 3.0), high = 3.0;
@@ -19,7 +20,7 @@ static double jkr(double approach)
     return low * low * low - sqrt(6.0 * low * low * low);
 }
 
-/* Closer in steps of 0.2 and back again: a handle follows the state before. */
+/* Moves the sphere closer in steps of 0.2, and back again. Each solve of the handle starts from the state of the step before. */
 static int loop(contact_normal_scene *scene)
 {
     contact_normal_solver *solver = NULL;
@@ -48,7 +49,8 @@ static int loop(contact_normal_scene *scene)
     return k == 2 * STEPS - 1;
 }
 
-/* The contact area, a part of the whole, by the mean pressure, for works of adhesion from none to sticky. E* = 1, the grid is one period. */
+/* Prints the part of the area that is in contact, for several mean pressures, and for works of adhesion from none to strong. E* = 1, and the grid
+   is one period. */
 static int weak_to_sticky(void)
 {
     static const int waves[WAVES][2] = {{2, 1}, {1, -2}, {3, 2}, {-2, 4}, {5, 1}, {4, -5}};
@@ -115,7 +117,7 @@ int main(void)
     scene.mx = scene.my = M;
     scene.dx = scene.dy = d;
     scene.undeformed_distance = h;
-    scene.shear_modulus[0] = 0.5 * modulus; /* 1/E* = (1 - nu)/(2 G) of this body; the other one is rigid */
+    scene.shear_modulus[0] = 0.5 * modulus; /* 1/E* is (1 - nu)/(2 G) of this body, because the other one is rigid */
     scene.shear_modulus[1] = (double)INFINITY;
     scene.adhesion = &adhesion;
     contact_normal_report_init(&report);

@@ -1,5 +1,5 @@
-/* A table of contact against approach, as vehicle simulations make them beforehand: many problems on one grid, solved on all
-   cores by one call.
+/* A table of contacts for several approaches, as vehicle simulations compute it in advance: many problems on one grid are solved by one call on all
+   cores.
 
    batch [file]: the last solution goes to the file. */
 #include "example.h"
@@ -11,7 +11,7 @@ int main(int argc, char **argv)
     const double curvature_x = 0.0016681, curvature_y = 0.0030671; /* 1/mm */
     double *h = doubles(M * M), *p = doubles(COUNT * M * M);
     int32_t *contact = flags(M * M);
-    /* Too large for some stacks. */
+    /* The arrays are static because they are too large for some stacks. */
     static contact_normal_scene scenes[COUNT];
     static contact_normal_fields fields[COUNT];
     static contact_normal_report reports[COUNT];
@@ -22,7 +22,7 @@ int main(int argc, char **argv)
 
     contact_normal_options_init(&options);
     options.tolerance = 1e-9;
-    options.threads = 0; /* all cores; the results have the same bits for any number */
+    options.threads = 0; /* all cores; results have the same bits for any number of threads */
 
     for (i = 0; i < COUNT; i++) {
         contact_normal_scene_init(&scenes[i]);
@@ -30,12 +30,12 @@ int main(int argc, char **argv)
         scenes[i].my = M;
         scenes[i].dx = 20.0 / M;
         scenes[i].dy = 12.0 / M;
-        scenes[i].undeformed_distance = h; /* only read: the same for all, here */
+        scenes[i].undeformed_distance = h; /* it is only read, so all problems can share it */
         scenes[i].shear_modulus[0] = scenes[i].shear_modulus[1] = 82000.0;
         scenes[i].poisson_ratio[0] = scenes[i].poisson_ratio[1] = 0.28;
         scenes[i].approach = 0.1 * (i + 1) / COUNT;
         contact_normal_fields_init(&fields[i]);
-        fields[i].pressure = p + i * M * M; /* written: one for each */
+        fields[i].pressure = p + i * M * M; /* it is written, so each problem has its own */
         contact_normal_report_init(&reports[i]);
     }
     fields[COUNT - 1].contact = contact;

@@ -1,12 +1,13 @@
-/* Effect `coating`: a steel ball of radius 10 mm on a steel plate with an elastic coating of 0.05 mm, 100 N; from soft to stiff. The
-   compliance of a thin layer, which is exact to first order in the thickness, stands beside it where it is one: > 0. */
+/* Effect `coating`: a steel ball of radius 10 mm is pressed by 100 N onto a steel plate with an elastic coating of 0.05 mm, from soft to stiff
+   coatings. Where its compliance is positive, a thin layer, which is exact to first order in the thickness, is solved for comparison. */
 #include "example.h"
 
 enum { M = 96 };
 
 static const double G = 80000.0, NU = 0.3, THICKNESS = 0.05;
 
-/* The displacement of a uniform pressure beyond that of the plate alone (docs/effects.md). */
+/* The compliance of a thin layer that stands for the coating: the displacement by a unit pressure beyond that of the plate alone. See
+   docs/effects.md. */
 static double first_order(double shear_modulus)
 {
     return THICKNESS * ((1 - 2 * NU) / (2 * shear_modulus * (1 - NU)) - NU * (1 - 2 * NU) / ((1 - NU) * G) -

@@ -1,5 +1,5 @@
-/* A table of creep forces: steel on steel, an ellipse of contact in steady rolling. The normal problem is solved once, then the tangential
-   one for each creepage and spin, on all cores. */
+/* A table of creep forces: an elliptic contact of steel on steel in steady rolling. The normal problem is solved once, and then the tangential
+   problem for each creepage and spin, on all cores. */
 #include "example.h"
 
 enum { MX = 48, MY = 36, CREEPAGES = 7, SPINS = 2, N = CREEPAGES * SPINS };
@@ -36,7 +36,7 @@ int main(void)
     friction.coefficient = 0.3;
     friction.motion = CONTACT_NORMAL_MOTION_STEADY_ROLLING;
     options.threads = 0;
-    /* Neighbours in the list are neighbours in the motion. */
+    /* Entries that follow each other have similar motions, because each solve starts from the tractions of the entry before. */
     for (k = 0; k < SPINS; k++) {
         for (i = 0; i < CREEPAGES; i++) {
             entries[k * CREEPAGES + i][0] = creepages[i];

@@ -1,4 +1,4 @@
-/* What the examples share: how a failure is reported, and how the solution is written to a file. */
+/* Functions that the examples share: they report a failure, and write the solution to a file. */
 #ifndef EXAMPLE_H
 #define EXAMPLE_H
 
@@ -7,8 +7,8 @@
 
 #include "contact_normal.h"
 
-/* Returns 1 if a call solved its problem; otherwise says on stderr what went wrong and returns 0. A status > 0 comes with
-   usable arrays, but the promised tolerance was not reached: a failure, here. */
+/* Returns 1 if a call has solved its problem. Otherwise it writes the reason to stderr and returns 0. With a status > 0 the arrays are usable, but
+   the tolerance is not reached; the examples treat this as a failure. */
 static inline int solved(contact_normal_status status, const char *call)
 {
     if (status == CONTACT_NORMAL_OK) return 1;
@@ -16,7 +16,7 @@ static inline int solved(contact_normal_status status, const char *call)
     return 0;
 }
 
-/* Memory for `count` doubles, or the end of the program: an example has nothing better to do. */
+/* Allocates memory for `count` doubles. Without memory it ends the program. */
 static inline double *doubles(int count)
 {
     double *values = calloc((size_t)count, sizeof *values);
@@ -27,7 +27,7 @@ static inline double *doubles(int count)
     return values;
 }
 
-/* The same for the contact area. */
+/* Allocates memory for the contact area. Without memory it ends the program. */
 static inline int32_t *flags(int count)
 {
     int32_t *values = calloc((size_t)count, sizeof *values);
@@ -38,8 +38,8 @@ static inline int32_t *flags(int count)
     return values;
 }
 
-/* Writes "mx my dx dy approach", then "h p contact" per element, x fastest, with all digits. Returns 1, or 0 after a
-   message on stderr. path NULL: nothing is wanted. */
+/* Writes "mx my dx dy approach", then "h p contact" per element, x fastest, with all digits. Returns 1, or 0 after a message on stderr. If `path`
+   is NULL, it writes nothing. */
 static inline int write_solution(const char *path, const contact_normal_scene *scene, double approach,
                                  const double *p, const int32_t *contact)
 {

@@ -1,5 +1,5 @@
-/* Flash temperature: a steel ball of radius 5 mm, held still, on a steel disc that slides past it at 2 and 20 m/s; 50 N, a friction
-   coefficient of 0.1. The heat of each element is mu p v. In m, N, s, W and K. */
+/* Flash temperature: a steel ball of radius 5 mm does not move, and is pressed by 50 N onto a steel disc that slides past it at 2 and 20 m/s. The
+   friction coefficient mu is 0.1, and the heat flux into each element mu p v. Units are m, N, s, W and K. */
 #include "example.h"
 
 enum { M = 80 };

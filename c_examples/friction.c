@@ -1,5 +1,5 @@
-/* Effect `friction`: a steel ball on a steel plate, pushed sideways. Cattaneo and Mindlin: it sticks in a disc that shrinks, slips in a
-   ring that grows, and slides when the force is mu times the normal force. */
+/* Effect `friction`: a steel ball on a steel plate is pushed sideways. As in the theory of Cattaneo and Mindlin the contact sticks in a disc that
+   shrinks with the force, and slips in the ring around it. The ball slides when the force is mu times the normal force. */
 #include "example.h"
 
 enum { M = 64 };

@@ -1,19 +1,19 @@
-/* A gap that the Python package made of measured heights, or of the profiles of a wheel and a rail, and wrote by `Gap.write`.
+/* Solves a gap that the Python package made from measured heights, or from the profiles of a wheel and a rail, and wrote by `Gap.write`.
 
-   gap ../data/gaps/ground.txt 1.2288 [file]: presses the surfaces together by a force; lengths in mm, forces in N, bodies of steel. The solution
-   goes to the file. */
+   gap ../data/gaps/ground.txt 1.2288 [file]: presses the surfaces of steel bodies together by a force. Lengths are in mm, forces in N. The solution
+   is written to the file. */
 #include <string.h>
 
 #include "example.h"
 
-/* Reads lines that begin with "#", "mx my dx dy", and one distance per element, x fastest; "inf" is no surface. */
+/* Reads a file of a gap: lines that begin with "#", a line "mx my dx dy", and one undeformed distance per element, x fastest; "inf": no surface. */
 static double *read_gap(const char *path, contact_normal_scene *scene)
 {
     char line[512];
     double *h = NULL;
     long start = 0;
     int mx = 0, my = 0, i = 0, ok = 0;
-    FILE *file = fopen(path, "rb"); /* Windows: places in the file are bytes */
+    FILE *file = fopen(path, "rb"); /* binary, because on Windows positions in a text file are no numbers of bytes */
 
     if (file == NULL) {
         perror(path);

@@ -1,7 +1,7 @@
-/* The test problem of the paper: two steel bodies with h = A x^2 + B y^2, pressed together by a given approach, beside
-   the exact solution of Hertz.
+/* The test problem of the paper: two steel bodies with h = A x^2 + B y^2 are pressed together by a given approach. The result is compared with the
+   exact solution of Hertz.
 
-   hertz [m [file]]: m x m elements (default 128); the solution goes to the file. */
+   hertz [m [file]]: m x m elements (default 128); the solution is written to the file. */
 #include "example.h"
 
 static const double curvature_x = 0.0016681, curvature_y = 0.0030671; /* 1/mm */
@@ -32,7 +32,7 @@ int main(int argc, char **argv)
     p = doubles(m * m);
     contact = flags(m * m);
 
-    /* What is simulated: millimetres and newtons, but any consistent system would do. */
+    /* The scene. Units are mm and N here; any consistent units can be used. */
     contact_normal_scene_init(&scene);
     scene.mx = m;
     scene.my = m;
@@ -40,7 +40,7 @@ int main(int argc, char **argv)
     scene.dy = 12.0 / m;
     for (iy = 0; iy < m; iy++) {
         for (ix = 0; ix < m; ix++) {
-            /* The coordinates of the element's centre. */
+            /* The coordinates of the centre of the element. */
             const double x = (ix + 0.5) * scene.dx - 10.0, y = (iy + 0.5) * scene.dy - 6.0;
             h[iy * m + ix] = curvature_x * x * x + curvature_y * y * y;
         }
@@ -50,11 +50,11 @@ int main(int argc, char **argv)
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
     scene.approach = 0.1091;
 
-    /* How: the defaults suit everybody; the digits printed here ask for a little more. */
+    /* The options. The defaults suit most problems; the digits that are printed here need a smaller tolerance. */
     contact_normal_options_init(&options);
     options.tolerance = 1e-9;
 
-    /* What is wanted of the result. */
+    /* The arrays of the result that are wanted. */
     contact_normal_fields_init(&fields);
     fields.pressure = p;
     fields.contact = contact;

@@ -1,5 +1,5 @@
-/* Friction that falls with the slip velocity, over a third body that yields: the creep curve of a steel wheel on a rail at 10 m/s. With a law the
-   force has a maximum; with one coefficient it has none. */
+/* Friction that falls with the slip velocity: creep curves of a steel wheel on a rail at 10 m/s with an elastic third body, for a constant
+   coefficient, for a law, and for a third body that yields. With the law the force has a maximum; with a constant coefficient it has none. */
 #include "example.h"
 
 enum { MX = 48, MY = 44 };
@@ -28,7 +28,7 @@ int main(void)
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0; /* N/mm2 */
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
     scene.force = 106700.0; /* N */
-    friction.coefficient = 0.33; /* at rest */
+    friction.coefficient = 0.33; /* mu at rest */
     friction.motion = CONTACT_NORMAL_MOTION_STEADY_ROLLING;
     friction.compliance = 1.25 / 8200.0; /* mm per N/mm2: a third body of 1.25 mm */
     friction.kinetic = 0.14;

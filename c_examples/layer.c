@@ -1,12 +1,12 @@
-/* Effect `layer`: a steel ball of radius 500 mm on a coated steel plate, 1000 N; coatings of growing compliance spread the
-   pressure. */
+/* Effect `layer`: a steel ball of radius 500 mm is pressed by 1000 N onto a steel plate with a thin layer. The more compliant the layer is, the
+   larger is the contact area. */
 #include "example.h"
 
 enum { M = 64 };
 
 int main(void)
 {
-    static const double compliances[] = {0.0, 1e-6, 1e-5, 1e-4}; /* mm per N/mm2: thickness over elastic modulus */
+    static const double compliances[] = {0.0, 1e-6, 1e-5, 1e-4}; /* in mm per N/mm2: the thickness over the modulus of the layer */
     static double h[M * M];
     contact_normal_scene scene;
     contact_normal_layer layer;

@@ -1,7 +1,7 @@
-/* How wrong is the answer, and what would a better one cost? The ledger of the paper's problem on m x m elements (default 256), beside
-   the errors that the exact solution of Hertz shows.
+/* How wrong is the answer, and what would a better one cost? The ledger of the paper's problem on m x m elements (default 256), with the estimated
+   errors and the true ones, which the exact solution of Hertz shows.
 
-   ledger [m [file]]: the solution goes to the file. */
+   ledger [m [file]]: the solution is written to the file. */
 #include <math.h>
 
 #include "example.h"
@@ -15,7 +15,7 @@ int main(int argc, char **argv)
     contact_normal_scene scene;
     contact_normal_fields fields;
     contact_normal_report report;
-    contact_normal_ledger_row ledger[32]; /* a row per grid, each with half the elements in a direction */
+    contact_normal_ledger_row ledger[32]; /* one row per grid; each grid has half the elements of the next in a direction */
     contact_normal_hertz_solution exact;
     double *h, *p;
     int32_t *contact;
@@ -47,7 +47,7 @@ int main(int argc, char **argv)
     fields.pressure = p;
     fields.contact = contact;
     contact_normal_report_init(&report);
-    contact_normal_ledger_row_init(ledger); /* the first row says how large one is */
+    contact_normal_ledger_row_init(ledger); /* the first row tells the library the size of a row */
     report.ledger = ledger;
     report.ledger_capacity = sizeof ledger / sizeof *ledger;
 

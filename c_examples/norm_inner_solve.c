@@ -1,7 +1,7 @@
-/* An existing NORM keeps its active set and swaps its inner solver: the same function runs once with their own conjugate
-   gradients, once with V-cycles of the library, on the program's own table of influence coefficients.
+/* A program with Kalker's NORM keeps its active set, and replaces its inner solver: `norm` is called once with the program's conjugate gradients,
+   and once with V-cycles of the library, for the program's table of influence coefficients.
 
-   norm_inner_solve [file]: the solution by V-cycles goes to the file. */
+   norm_inner_solve [file]: the solution by V-cycles is written to the file. */
 #include <math.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@ enum { MX = 48, MY = 48, N = MX * MY };
 
 /* A_ij = table[iy - jy + MY][ix - jx + MX] */
 static double table[2 * MY][2 * MX];
-static const double tolerance = 1e-9; /* of the inner solves, relative to ||h - approach|| */
+static const double tolerance = 1e-9; /* the tolerance of the inner solves, relative to ||h - approach|| */
 static contact_normal_influence influence;
 static contact_normal_scene scene;
 static contact_normal_solver *solver;
@@ -22,7 +22,7 @@ struct solution {
     int steps, iterations;
 };
 
-/* u = A p on every element, by direct summation over the elements that carry pressure. */
+/* Computes u = A p on every element, by direct summation over the elements with a pressure. */
 static void displace(const double *p, double *u)
 {
     int i, j;
@@ -70,7 +70,7 @@ static int by_conjugate_gradients(const double *h, double approach, struct solut
     return 1;
 }
 
-/* The same by the library: active_set FIXED, from the given p, which may be negative afterwards. */
+/* Solves the same equations by the library, with active_set FIXED, from the given p. The resulting pressures may be negative. */
 static int by_v_cycles(const double *h, double approach, struct solution *s)
 {
     contact_normal_options options;
@@ -94,7 +94,7 @@ static int by_v_cycles(const double *h, double approach, struct solution *s)
     return 1;
 }
 
-/* NORM (Kalker): elements with p < 0 leave the contact area until there are none, then those with e < 0 enter. */
+/* Kalker's NORM: elements with p < 0 leave the contact area until there are none; then elements with e < 0 enter it, until none does. */
 static int norm(int (*inner)(const double *, double, struct solution *), const double *h, double approach,
                 struct solution *s)
 {
@@ -147,7 +147,7 @@ int main(int argc, char **argv)
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
 
-    /* The table of an existing program would come from there; here it is the library's. */
+    /* An existing program has its own table. Here the library computes the table. */
     contact_normal_influence_init(&influence);
     influence.cx = MX;
     influence.cy = MY;
@@ -170,7 +170,7 @@ int main(int argc, char **argv)
         printf("%-22s %12d %12d\n", "active-set steps", gradients.steps, cycles.steps);
         printf("%-22s %12d %12d\n", "iterations", gradients.iterations, cycles.iterations);
         printf("%-22s %12.3f %12.3f\n", "force [N]", force[0], force[1]);
-        /* Two inner solutions to 1e-9 differ by that, times some tens for the condition of A. */
+        /* Two inner solutions with residuals of 1e-9 differ by 1e-9 times the condition of A, which is some tens. */
         printf("pressures differ by less than 1e-6 of the maximum: %s\n", difference < 1e-6 * largest ? "yes" : "no");
         ok = difference < 1e-6 * largest
              && write_solution(argc > 1 ? argv[1] : NULL, &scene, approach, cycles.p, cycles.contact);

@@ -1,5 +1,5 @@
-/* Effect `friction` with coefficients of the program's own, as programs in the tradition of CONTACT have them: five tables for a steel ball on
-   something softer. Kalker's formulas of the half-space are taken here, so the library's own coefficients must give the same. */
+/* Effect `friction` with influence coefficients that the program computes, as programs in the tradition of CONTACT do: five tables for a steel ball
+   on a softer body. They are Kalker's formulas for half-spaces, so the library's built-in coefficients must give the same result. */
 #include <math.h>
 
 #include "example.h"
@@ -8,7 +8,7 @@ enum { M = 24, C = 2 * M };
 
 static const double PI = 3.14159265358979323846, D = 0.09;
 
-/* What the formulas are differences of, over the corners of an element. */
+/* The primitive of a coefficient. The coefficient is a sum over the corners of an element, with signs. */
 static double corner(int table, double x, double y, double nu)
 {
     const double r = sqrt(x * x + y * y), a = x * asinh(y / fabs(x)), b = y * asinh(x / fabs(y));
@@ -26,7 +26,7 @@ int main(void)
     static double h[M * M], traction[2][2][M * M], tables[5][C * C];
     contact_normal_scene scene;
     contact_normal_friction friction;
-    contact_normal_influence influence[5]; /* xx, yy, xy, and of unlike bodies xz, yz */
+    contact_normal_influence influence[5]; /* xx, yy, xy; and for bodies with different constants xz, yz */
     contact_normal_fields fields;
     contact_normal_report report;
     double g, nu, k, difference = 0.0, largest = 0.0;
@@ -52,12 +52,12 @@ int main(void)
     friction.creepage[0] = -1.2e-3;
     scene.friction = &friction;
 
-    /* Of both bodies together: 1/G, nu/G and K/G. */
+    /* G, nu and K of both bodies together. 1/G and nu/G are the means of those of the bodies. */
     g = 2.0 / (1.0 / scene.shear_modulus[0] + 1.0 / scene.shear_modulus[1]);
     nu = 0.5 * g * (scene.poisson_ratio[0] / scene.shear_modulus[0] + scene.poisson_ratio[1] / scene.shear_modulus[1]);
     k = 0.25 * g * ((1.0 - 2.0 * scene.poisson_ratio[0]) / scene.shear_modulus[0] -
                     (1.0 - 2.0 * scene.poisson_ratio[1]) / scene.shear_modulus[1]);
-    /* Offsets -M..M-1 in both directions, x fastest, times G. */
+    /* The coefficients times G at the offsets -M..M-1 in both directions, x fastest. */
     for (table = 0; table < 5; table++) {
         for (i = 0; i < C * C; i++) {
             const double x = (i % C - M) * D, y = (i / C - M) * D, e = 0.5 * D;

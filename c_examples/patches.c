@@ -1,5 +1,5 @@
-/* Effect `patches`: two steel balls side by side on one plate, 1000 N together: bodies of their own (factor 0), or one half-space
-   (factor 1), where each also presses the other down. */
+/* Effect `patches`: two steel balls are pressed side by side onto a plate by 1000 N in total. With the factor 0 each ball has a plate of its own.
+   With the factor 1 both are on one half-space, where each ball also displaces the surface below the other one. */
 #include "example.h"
 
 enum { M = 64 };

@@ -1,5 +1,5 @@
-/* Effect `period`: a wavy surface, d cos(2 pi x/L) cos(2 pi y/L), that goes on for ever in x and y. From a mean pressure of
-   p* = sqrt(2) pi E* d/L on, contact is full (Johnson, Contact Mechanics, section 13.3). */
+/* Effect `period`: a wavy surface d cos(2 pi x/L) cos(2 pi y/L), periodic in x and y. Contact is full if the mean pressure is at least
+   p* = sqrt(2) pi E* d/L (Johnson, Contact Mechanics, section 13.3). */
 #include <math.h>
 
 #include "example.h"

@@ -1,5 +1,5 @@
-/* Effect `pressure_limit`: a steel ball of radius 50 mm pressed into a surface of hardness 1200 N/mm2. Where the limit is
-   reached the surface gives way: the dent is the plastic penetration. */
+/* Effect `pressure_limit`: a steel ball of radius 50 mm is pressed into a surface with a hardness of 1200 N/mm2. Where this limit is reached, the
+   surface yields. The dent is the plastic penetration. */
 #include "example.h"
 
 enum { M = 64 };

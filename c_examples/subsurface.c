@@ -1,5 +1,5 @@
-/* Stresses below the surface: under a ball (Hertz), on the axis, with the exact ones beside them; then the ball slides, and the largest
-   von Mises stress moves (Hamilton 1983 has it at x = .27 a, z = .44 a for a friction of .25). */
+/* Stresses below the surface: on the axis of a ball (Hertz), compared with the exact ones. Then the ball slides, and the largest von Mises stress
+   is elsewhere (at x = 0.27 a, z = 0.44 a for a friction coefficient of 0.25, Hamilton 1983). */
 #include <math.h>
 
 #include "example.h"
@@ -27,7 +27,7 @@ int main(void)
         q[i] = 0.25 * p[i];
     }
     for (i = 0; i < DEPTHS; i++) depths[i] = 0.02 * i;
-    outputs.stress[2] = zz; /* what is not asked for is not computed */
+    outputs.stress[2] = zz; /* components that are not asked for are not computed */
     outputs.maximum_shear = shear;
     contact_normal_stress_maximum_init(&largest);
     outputs.largest_shear = &largest;

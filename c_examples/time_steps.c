@@ -1,7 +1,7 @@
-/* A simulation in time: the bodies roll over each other, every step changes the undeformed distance and the force a
-   little. A solver handle is set up once; each solve may start from what the handle found last.
+/* A simulation in time: two bodies roll on each other, and each step changes the undeformed distance and the force a little. A solver handle is set
+   up once. Each solve may start from the last result of the handle.
 
-   time_steps [file]: the last solution goes to the file. */
+   time_steps [file]: the last solution is written to the file. */
 #include <math.h>
 
 #include "example.h"
@@ -12,7 +12,7 @@ struct totals {
     double cycles, work_units;
 };
 
-/* The scene of one step: the point of contact wanders along an ellipse, the force goes up and down by 10 %. */
+/* Sets the scene of a step. The point of contact moves along an ellipse, and the force oscillates by 10 %. */
 static void set_step(contact_normal_scene *scene, double *h, int step)
 {
     const double phase = 2.0 * 3.141592653589793 * step / STEPS;
@@ -28,7 +28,7 @@ static void set_step(contact_normal_scene *scene, double *h, int step)
     scene->force = 80000.0 * (1.0 + 0.1 * sin(phase));
 }
 
-/* All steps, each started as `initial_guess` says. */
+/* Solves all steps. Each starts as `initial_guess` says. */
 static int simulate(contact_normal_scene *scene, double *h, int32_t initial_guess, contact_normal_fields *fields,
                     contact_normal_report *report, struct totals *totals)
 {

@@ -1,15 +1,15 @@
-/* An accuracy instead of a grid: the paper's ellipse pressed together by a given force, refined from 16 x 16 elements until
-   the approach is good to 0.1 % by the library's own estimate; the exact solution of Hertz tells whether that is true. Then
-   the same from nothing but the 16 x 16 values of the undeformed distance.
+/* An accuracy instead of a grid: the paper's ellipse is pressed by a given force, and refined from 16 x 16 elements until the estimated error of the
+   approach is 0.1 %. The exact solution of Hertz shows the true error. Then the same is solved from 16 x 16 values of the undeformed distance
+   alone, without the callback.
 
-   to_accuracy [file]: the solution goes to the file. */
+   to_accuracy [file]: the solution is written to the file. */
 #include <math.h>
 
 #include "example.h"
 
 static const double curvature_x = 0.0016681, curvature_y = 0.0030671; /* 1/mm */
 
-/* The undeformed distance of any grid over [-10, 10] x [-6, 6] mm. */
+/* The callback of the library: writes the undeformed distance of any grid over [-10, 10] x [-6, 6] mm. */
 static int32_t surface(int32_t mx, int32_t my, double dx, double dy, double *h, void *user)
 {
     int32_t ix, iy;
@@ -24,7 +24,7 @@ static int32_t surface(int32_t mx, int32_t my, double dx, double dy, double *h, 
     return 0;
 }
 
-/* Elements, numbers and the estimate: nothing that depends on the machine. */
+/* Prints the elements, the results and the estimated error, none of which depends on the machine. */
 static void print_result(const char *from, const contact_normal_accuracy *accuracy, double approach, double exact)
 {
     const double error = fabs(approach / exact - 1.0);
@@ -64,7 +64,7 @@ int main(int argc, char **argv)
     accuracy.max_elements = 1024 * 1024;
     accuracy.surface = surface;
     contact_normal_report_init(&report);
-    contact_normal_ledger_row_init(rows); /* the first row says how large one is */
+    contact_normal_ledger_row_init(rows); /* the first row tells the library the size of a row */
     report.ledger = rows;
     report.ledger_capacity = 16;
     contact_normal_hertz_solution_init(&exact);
@@ -79,7 +79,7 @@ int main(int argc, char **argv)
     printf("%-22s %11s %11s %16s %12s\n", "undeformed distance", "elements", "approach", "met by estimate", "met in fact");
     print_result("from a callback", &accuracy, report.normal.approach, exact.approach);
 
-    /* The arrays of the last grid, whose size we know only now. */
+    /* The arrays of the last grid, whose size is known only now. */
     n = accuracy.mx * accuracy.my;
     fine = doubles(n);
     p = doubles(n);
@@ -104,7 +104,7 @@ int main(int argc, char **argv)
     free(contact);
     if (!ok) return EXIT_FAILURE;
 
-    /* The same from an array, which the library refines by cubics; no handle is wanted. */
+    /* The same search from an array, from which the library interpolates finer grids by cubics. Here no handle is wanted. */
     surface(scene.mx, scene.my, scene.dx, scene.dy, h, NULL);
     scene.undeformed_distance = h;
     accuracy.surface = NULL;
@@ -113,7 +113,7 @@ int main(int argc, char **argv)
         return EXIT_FAILURE;
     print_result("from 16 x 16 values", &accuracy, report.normal.approach, exact.approach);
 
-    /* What the last solve knew on each grid: one row each, coarsest first. */
+    /* The results of the last solve on each grid, one row per grid, the coarsest first. */
     printf("\n%-11s %11s %17s\n", "grid", "approach", "estimated error");
     for (i = 0; i < (int)report.ledger_rows && i < 16; i++) {
         printf("%4d x %-4d %11.6f", (int)rows[i].mx, (int)rows[i].my, rows[i].approach);

@@ -1,6 +1,7 @@
-/* Effect `visco`: a rigid ball of radius 10 mm on a polymer plate of two branches. First its approach is held, and the force relaxes as the
-   modulus does; then a force is held, and the approach creeps as the compliance does to the power 2/3. Last, two balls of it roll on each other
-   at one speed, by coefficients of their own: relaxed material is behind, so pressures are ahead of the middle. mm, N, s. */
+/* Effect `visco`: a rigid ball of radius 10 mm on a polymer plate, whose modulus has two branches. First the approach is held, and the force relaxes
+   as the modulus does. Then a force is held, and the approach creeps as the compliance to the power 2/3. At last two viscoelastic balls roll on each
+   other at the same speed, with influence coefficients of steady rolling: the material behind the contact is relaxed, so the pressures are ahead of
+   the middle. Units are mm, N and s. */
 #include <math.h>
 
 #include "example.h"
@@ -9,13 +10,13 @@ enum { M = 64, STEPS = 8, ROLLED = 32, REACH = ROLLED + 1 };
 
 static const double G = 8.0, MODULI[2] = {4.0, 3.0}, TIMES[2] = {0.3, 3.0};
 
-/* G(t), which is 8 N/mm2 at once and 1 in the end. */
+/* The relaxation modulus G(t), 8 N/mm2 at t = 0 and 1 N/mm2 in the end. */
 static double modulus(double t)
 {
     return G + MODULI[0] * expm1(-t / TIMES[0]) + MODULI[1] * expm1(-t / TIMES[1]);
 }
 
-/* Steps of 0.25 s after a jump of the load, which is then held. */
+/* Solves steps of 0.25 s after a jump of the load, which is then held. */
 static int held(contact_normal_scene *scene, contact_normal_visco *visco)
 {
     contact_normal_solver *solver = NULL;
@@ -41,7 +42,8 @@ static int held(contact_normal_scene *scene, contact_normal_visco *visco)
     return 1;
 }
 
-/* Coefficients of both balls, which give way to half their modulus in 4 ms: those of pressures, and of tractions one element farther, for the step. */
+/* Computes the influence coefficients of both balls, whose modulus relaxes to one half with a time of 4 ms. Those of tractions reach one element
+   farther than those of pressures, because of the step of rolling. */
 static int made(double d, double speed, double *normal, double *own)
 {
     const double half[1] = {4.0}, time[1] = {0.004}, shear_modulus[2] = {8.0, 8.0}, poisson_ratio[2] = {0.4, 0.4};
@@ -60,7 +62,7 @@ static int made(double d, double speed, double *normal, double *own)
                   "contact_normal_influence_rolling_tangential");
 }
 
-/* Balls of radius 50 mm pressed by 100 N roll to the right, or to the left: how far pressures are ahead, and the creep force. */
+/* Rolls balls of radius 50 mm under 100 N to the right, or to the left. Prints how far the pressures are ahead, and the creep force. */
 static int rolls(double speed)
 {
     static double h[ROLLED * ROLLED], p[ROLLED * ROLLED], normal[4 * ROLLED * ROLLED], own[12 * REACH * REACH];

@@ -1,6 +1,6 @@
-/* A real wheel-rail contact with the force given, beside what the CONTACT program (NORM) found for it.
+/* A real wheel-rail contact with a given force. The result is compared with that of the program CONTACT (NORM).
 
-   wheel_rail data/wheel_rail/y4_82kN.txt [file]: the solution goes to the file. */
+   wheel_rail data/wheel_rail/y4_82kN.txt [file]: the solution is written to the file. */
 #include <math.h>
 #include <string.h>
 
@@ -8,12 +8,12 @@
 
 struct wheel_rail {
     contact_normal_scene scene;
-    double approach; /* the reference's */
+    double approach; /* that of the reference */
     double *h, *p;
     int32_t *contact;
 };
 
-/* Reads three comment lines, "mx my dx dy approach force shear_modulus poisson_ratio", and "h p contact" per element. */
+/* Reads a data file: three comment lines, a line "mx my dx dy approach force shear_modulus poisson_ratio", and a line "h p contact" per element. */
 static int read_case(const char *path, struct wheel_rail *reference)
 {
     contact_normal_scene *scene = &reference->scene;
@@ -96,7 +96,7 @@ int main(int argc, char **argv)
         p = doubles(scene->mx * scene->my);
         contact = flags(scene->mx * scene->my);
         contact_normal_options_init(&options);
-    options.tolerance = 1e-9; /* CONTACT's result was computed to 1e-7 */
+    options.tolerance = 1e-9; /* the result of CONTACT has a tolerance of 1e-7 */
     contact_normal_fields_init(&fields);
         fields.pressure = p;
         fields.contact = contact;

@@ -1,6 +1,6 @@
-! A sphere that sticks to a plane: its force on the way closer and back beside that of Johnson, Kendall and Roberts, and the pull-off; then a
-! rough surface that repeats itself, from weak to sticky. Units of the sphere: R = 1, w = 1/pi, E* = 3/4, in which forces are in pi w R, and
-! JKR pulls off at -1.5.
+! A sphere that adheres to a plane comes closer and goes back. Its forces are compared with those of Johnson, Kendall and Roberts (JKR), and its
+! pull-off force is found. Then a periodic rough surface is solved with weak to strong adhesion. With R = 1, w = 1/pi and E* = 3/4 of the sphere
+! forces are in pi w R, and the pull-off force of JKR is -1.5.
 program adhesion_of_a_sphere
   use, intrinsic :: iso_c_binding
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
@@ -25,7 +25,7 @@ program adhesion_of_a_sphere
   scene%my = m
   scene%dx = d
   scene%dy = d
-  ! 1/E* = (1 - nu)/(2 G) of body 1, body 2 is rigid.
+  ! 1/E* is (1 - nu)/(2 G) of body 1, because body 2 is rigid.
   scene%shear_modulus = [0.375_c_double, ieee_value(0.0_c_double, ieee_positive_inf)]
   call contact_normal_set_undeformed_distance(scene, h)
   ! Tabor's parameter is 1.9.
@@ -42,7 +42,7 @@ program adhesion_of_a_sphere
 
 contains
 
-  ! Closer in steps of 0.2 and back again: a handle follows the state before.
+  ! Moves the sphere closer in steps of 0.2, and back again. Each solve of the handle starts from the state of the step before.
   subroutine loop()
     type(contact_normal_solver) :: solver
     type(contact_normal_options) :: options
@@ -72,7 +72,8 @@ contains
     end do
   end subroutine
 
-  ! The force of JKR at an approach a^2 - 2/3 sqrt(6 a): a^3 - sqrt(6 a^3), by halving the radius of contact a from its least on.
+  ! The force of JKR at a given approach. With the contact radius a the approach is a^2 - 2/3 sqrt(6 a), and the force a^3 - sqrt(6 a^3). a is
+  ! found by bisection, from the radius of least approach on.
   real(c_double) function jkr(approach)
     real(c_double), intent(in) :: approach
     real(c_double) :: low, high, a
@@ -90,7 +91,8 @@ contains
     jkr = low**3 - sqrt(6*low**3)
   end function
 
-  ! The contact area, a part of the whole, by the mean pressure, for works of adhesion from none to sticky. E* = 1, the grid is one period.
+  ! Prints the part of the area that is in contact, for several mean pressures, and for works of adhesion from none to strong. E* = 1, and the
+  ! grid is one period.
   subroutine weak_to_sticky()
     integer, parameter :: waves(2, 0:5) = reshape([2, 1, 1, -2, 3, 2, -2, 4, 5, 1, 4, -5], [2, 6])
     real(c_double), parameter :: works(3) = [0.0_c_double, 1e-5_c_double, 1e-4_c_double], pi = acos(-1.0_c_double)

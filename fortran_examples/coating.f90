@@ -1,4 +1,5 @@
-! Effect `coating`: a steel ball of radius 10 mm on a steel plate with an elastic coating of 0.05 mm, 100 N; from soft to stiff.
+! Effect `coating`: a steel ball of radius 10 mm is pressed by 100 N onto a steel plate with an elastic coating of 0.05 mm, from soft to stiff
+! coatings.
 program coating_example
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
   use contact_normal

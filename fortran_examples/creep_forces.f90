@@ -1,5 +1,5 @@
-! A table of creep forces: steel on steel, an ellipse of contact in steady rolling. The normal problem is solved once, then the tangential
-! one for each creepage and spin, on all cores.
+! A table of creep forces: an elliptic contact of steel on steel in steady rolling. The normal problem is solved once, and then the tangential
+! problem for each creepage and spin, on all cores.
 program creep_forces
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t, c_int64_t
   use contact_normal
@@ -39,7 +39,7 @@ program creep_forces
   call contact_normal_set_friction(scene, friction, coefficient=MU)
   friction%motion = CONTACT_NORMAL_MOTION_STEADY_ROLLING
   options%threads = 0
-  ! Neighbours in the list are neighbours in the motion.
+  ! Entries that follow each other have similar motions, because each solve starts from the tractions of the entry before.
   do k = 1, SPINS
     do i = 1, CREEPAGES
       entries(:, (k - 1)*CREEPAGES + i) = [XI(i), 0.0_dp, PHI(k)]

@@ -13,7 +13,7 @@ program friction
   real(dp), parameter :: SHIFTS(5) = [-0.6_dp, -0.6_dp, 0.6_dp, 0.6_dp, 0.6_dp]
   integer :: ix, iy, step
 
-  ! Hertz' pressures of 1000 N on h = r^2/100.
+  ! The pressures of Hertz for a force of 1000 N and h = r^2/100.
   call contact_normal_hertz_solution_init(hertz)
   ierror = contact_normal_hertz(0.01_dp, 0.01_dp, G, NU, CONTACT_NORMAL_PRESCRIBED_FORCE, 1000.0_dp, hertz)
   if (ierror /= 0) error stop "no Hertz solution"

@@ -1,6 +1,6 @@
-! A gap that the Python package made of measured heights, or of the profiles of a wheel and a rail, and wrote by Gap.write.
-! Usage: gap ../data/gaps/wheel_rail.txt 80000 [file for the arrays]: presses the surfaces together by a force; lengths in mm, forces in N,
-! bodies of steel.
+! Solves a gap that the Python package made from measured heights, or from the profiles of a wheel and a rail, and wrote by Gap.write.
+! Usage: gap ../data/gaps/wheel_rail.txt 80000 [file for the arrays]: presses the surfaces of steel bodies together by a force. Lengths are in mm,
+! forces in N.
 program gap
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
   use, intrinsic :: iso_fortran_env, only: error_unit
@@ -40,7 +40,7 @@ program gap
 
 contains
 
-  ! Two lines that begin with "#", "mx my dx dy", and one distance per element, x first; "inf" is no surface.
+  ! Reads two lines that begin with "#", a line "mx my dx dy", and one undeformed distance per element, x first; "inf": no surface.
   subroutine read_gap()
     character(1000) :: name
     integer :: unit, ix, iy, failed
@@ -74,7 +74,7 @@ contains
     stop 1
   end subroutine
 
-  ! "mx my dx dy approach", then "h p contact" of each element.
+  ! Writes "mx my dx dy approach", then "h p contact" of each element.
   subroutine write_arrays()
     character(1000) :: name
     integer :: unit, ix, iy

@@ -1,5 +1,5 @@
-! The paper's case: two steel bodies with h = 0.0016681 x^2 + 0.0030671 y^2 (mm) pressed together by 0.1091 mm, against
-! the exact solution of Hertz. Usage: hertz [file for the arrays]
+! The test problem of the paper: two steel bodies with h = 0.0016681 x^2 + 0.0030671 y^2 (mm) and an approach of 0.1091 mm. The result is compared
+! with the exact solution of Hertz. Usage: hertz [file for the arrays]
 program hertz
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
   use contact_normal
@@ -59,7 +59,7 @@ contains
     error stop 1
   end subroutine
 
-  ! "mx my dx dy approach", then "h p contact" of each element.
+  ! Writes "mx my dx dy approach", then "h p contact" of each element.
   subroutine write_arrays()
     character(1000) :: name
     integer :: unit

@@ -1,5 +1,5 @@
-! Friction that falls with the slip velocity: a steel wheel starts to roll at 10 m/s, step by step. What particles of the interface
-! carry, the coefficient of each element, goes from step to step on the handle.
+! Friction that falls with the slip velocity: a steel wheel starts to roll at 10 m/s, step by step. The solver handle keeps the state of the
+! particles of the interface, the friction coefficient of each element, from step to step.
 program laws
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t, c_loc
   use contact_normal

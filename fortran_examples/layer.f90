@@ -1,5 +1,5 @@
-! Effect `layer`: a steel ball of radius 500 mm on a coated steel plate, 1000 N; coatings of growing compliance spread the
-! pressure.
+! Effect `layer`: a steel ball of radius 500 mm is pressed by 1000 N onto a steel plate with a thin layer. The more compliant the layer is, the
+! larger is the contact area.
 program layer_example
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
   use contact_normal

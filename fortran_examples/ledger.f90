@@ -1,4 +1,5 @@
-! How wrong is the answer? The ledger of the paper's case, beside the exact force of Hertz. Usage: ledger [file for the arrays]
+! How wrong is the answer? The ledger of the paper's problem, with the estimated errors of the force and the true ones (Hertz).
+! Usage: ledger [file for the arrays]
 program ledger_example
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
   use contact_normal
@@ -60,7 +61,7 @@ contains
     error stop 1
   end subroutine
 
-  ! "mx my dx dy approach", then "h p contact" of each element.
+  ! Writes "mx my dx dy approach", then "h p contact" of each element.
   subroutine write_arrays()
     character(1000) :: name
     integer :: unit

@@ -1,5 +1,5 @@
-! What norm_solve replaces: a small NORM with conjugate gradients and products by direct summation, as contact codes
-! have it, and then the same contact by one call. Usage: norm_drop_in [file for the arrays]
+! What norm_solve replaces: solves a contact by a small NORM with conjugate gradients and products by direct summation, as contact codes have it,
+! and then by one call of norm_solve. Usage: norm_drop_in [file for the arrays]
 program norm_drop_in
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t, c_int64_t
   use contact_normal, only: norm_solve, contact_normal_influence_half_space
@@ -44,8 +44,8 @@ program norm_drop_in
 
 contains
 
-  ! Kalker's NORM for a given approach: the equations on the contact area, then elements with negative pressure leave
-  ! and elements that penetrate enter, until none does.
+  ! Kalker's NORM for a given approach: solves the equations on the contact area. Then elements with a negative pressure leave it, and elements that
+  ! penetrate enter it, until none does.
   subroutine norm(igs, ps, fn, itcg)
     integer(c_int32_t), intent(out) :: igs(MX, MY), itcg
     real(dp), intent(out) :: ps(MX, MY), fn
@@ -63,7 +63,7 @@ contains
     fn = sum(ps)*DX*DY
   end subroutine
 
-  ! A p = PEN - hs on the contact area, p = 0 outside.
+  ! Solves A p = PEN - hs on the contact area, with p = 0 outside.
   subroutine conjugate_gradients(igs, p, itcg)
     integer(c_int32_t), intent(in) :: igs(MX, MY)
     real(dp), intent(out) :: p(MX, MY)
@@ -86,7 +86,7 @@ contains
     end do
   end subroutine
 
-  ! u = A p by direct summation, O(n^2).
+  ! Computes u = A p by direct summation, with O(n^2) operations.
   function product_by(p) result(u)
     real(dp), intent(in) :: p(MX, MY)
     real(dp) :: u(MX, MY)
@@ -104,7 +104,7 @@ contains
     end do
   end function
 
-  ! "mx my dx dy approach", then "h p contact" of each element.
+  ! Writes "mx my dx dy approach", then "h p contact" of each element.
   subroutine write_arrays()
     character(1000) :: name
     integer :: unit

@@ -1,4 +1,4 @@
-! Friction with coefficients of the program's own: five tables, Kalker's formulas of the half-space for a steel ball on something softer.
+! Friction with influence coefficients that the program computes: five tables by Kalker's formulas for half-spaces, for a steel ball on a softer body.
 program own_tables
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t, c_loc, c_null_ptr
   use contact_normal
@@ -23,7 +23,7 @@ program own_tables
       h(ix, iy) = (((ix - 0.5_dp*(M + 1))*D)**2 + ((iy - 0.5_dp*(M + 1))*D)**2)/100
     end do
   end do
-  ! Of both bodies together: G, nu and K; the tables are those times G.
+  ! G, nu and K of both bodies together. The tables hold the coefficients times G.
   both = 2/sum(1/G)
   nu_of_both = 0.5_dp*both*sum(NU/G)
   k = 0.25_dp*both*((1 - 2*NU(1))/G(1) - (1 - 2*NU(2))/G(2))
@@ -68,7 +68,7 @@ program own_tables
 
 contains
 
-  ! What the formulas are differences of, over the corners of an element; (x, y) in elements.
+  ! The primitive of a coefficient, with (x, y) in elements. The coefficient is a sum over the corners of an element, with signs.
   real(dp) function corner(i, x_in_elements, y_in_elements) result(value)
     integer, intent(in) :: i
     real(dp), intent(in) :: x_in_elements, y_in_elements

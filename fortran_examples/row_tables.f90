@@ -1,5 +1,5 @@
-! Effect `row_tables`: a steel roller in a groove, 20 kN. y runs along the groove's section, which is a part of a circle: the
-! normals turn with it, and what a pressure displaces along another normal is the cosine of what it would be in a plane.
+! Effect `row_tables`: a steel roller is pressed into a groove by 20 kN. y runs along the section of the groove, a part of a circle, so that the
+! normal rotates with y. The displacement along the normal of another row is that on a plane times the cosine of the angle between the normals.
 program row_tables_example
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
   use contact_normal

@@ -1,5 +1,5 @@
-! Stresses below the surface: under a ball (Hertz), on the axis, with the exact ones beside them; then the ball slides, and the largest
-! von Mises stress moves (Hamilton 1983 has it at x = .27 a, z = .44 a for a friction of .25).
+! Stresses below the surface: on the axis of a ball (Hertz), compared with the exact ones. Then the ball slides, and the largest von Mises stress
+! is elsewhere (at x = 0.27 a, z = 0.44 a for a friction coefficient of 0.25, Hamilton 1983).
 program subsurface
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
   use contact_normal

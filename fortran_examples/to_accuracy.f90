@@ -1,5 +1,5 @@
-! An accuracy instead of a grid: the paper's ellipse, refined from 16 x 16 elements until the force is good to 0.1 % by the
-! library's own estimate; the exact solution of Hertz tells whether that is true. Usage: to_accuracy [file for the arrays]
+! An accuracy instead of a grid: the paper's ellipse, refined from 16 x 16 elements until the estimated error of the force is 0.1 %. The exact
+! solution of Hertz shows the true error. Usage: to_accuracy [file for the arrays]
 module ellipse
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t, c_ptr, c_associated
   implicit none
@@ -7,7 +7,7 @@ module ellipse
 
 contains
 
-  ! The undeformed distance of any grid over [-10, 10] x [-6, 6] mm.
+  ! The callback of the library: writes the undeformed distance of any grid over [-10, 10] x [-6, 6] mm.
   function surface(mx, my, dx, dy, h, user) bind(C) result(cancel)
     integer(c_int32_t), value :: mx, my
     real(c_double), value :: dx, dy
@@ -16,7 +16,7 @@ contains
     integer(c_int32_t) :: cancel
     integer :: ix, iy
     cancel = 0
-    if (c_associated(user)) cancel = 1       ! never: none is set
+    if (c_associated(user)) cancel = 1       ! never, because `user` is not set
     do iy = 1, my
       do ix = 1, mx
         h(ix, iy) = CURVATURE_X*((ix - 0.5_c_double*(mx + 1))*dx)**2 + CURVATURE_Y*((iy - 0.5_c_double*(my + 1))*dy)**2
@@ -99,7 +99,7 @@ contains
     error stop 1
   end subroutine
 
-  ! "mx my dx dy approach", then "h p contact" of each element.
+  ! Writes "mx my dx dy approach", then "h p contact" of each element.
   subroutine write_arrays()
     character(1000) :: name
     real(c_double) :: h(accuracy%mx, accuracy%my)

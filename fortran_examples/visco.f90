@@ -1,6 +1,7 @@
-! Effect `visco`: a rigid ball of radius 10 mm on a polymer plate of two branches. First its approach is held, and the force relaxes as the
-! modulus does; then a force is held, and the approach creeps. Last, two balls roll on each other at one speed, by coefficients of
-! their own: relaxed material is behind, so pressures are ahead of the middle. mm, N, s.
+! Effect `visco`: a rigid ball of radius 10 mm on a polymer plate, whose modulus has two branches. First the approach is held, and the force relaxes
+! as the modulus does. Then a force is held, and the approach creeps. At last two viscoelastic balls roll on each other at the same speed, with
+! influence coefficients of steady rolling: the material behind the contact is relaxed, so the pressures are ahead of the middle. Units are mm, N
+! and s.
 program visco_of_a_ball
   use, intrinsic :: iso_c_binding
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
@@ -43,7 +44,7 @@ program visco_of_a_ball
 
 contains
 
-  ! Steps of 0.25 s after a jump of the load, which is then held.
+  ! Solves steps of 0.25 s after a jump of the load, which is then held.
   subroutine held()
     type(contact_normal_solver) :: solver
     type(contact_normal_report) :: report
@@ -69,8 +70,8 @@ contains
     call contact_normal_solver_free(solver)
   end subroutine
 
-  ! Balls of radius 50 mm that give way to half their modulus in 4 ms, pressed by 100 N, roll to the right or to the left. Coefficients
-  ! of tractions reach one element farther than those of pressures, for the step.
+  ! Rolls balls of radius 50 mm under 100 N to the right or to the left. Their modulus relaxes to one half with a time of 4 ms. The coefficients of
+  ! tractions reach one element farther than those of pressures, because of the step of rolling.
   subroutine rolls(speed)
     real(c_double), intent(in) :: speed
     integer(c_int32_t), parameter :: n = 32, reach = n + 1
@@ -99,7 +100,7 @@ contains
     xx => own(:, :, 1)
     yy => own(:, :, 2)
     xy => own(:, :, 3)
-    ! The steps of time are no part of a scene that rolls steadily.
+    ! The scene of steady rolling does not have the effect `visco`, which describes time steps.
     balls%visco = c_null_ptr
     balls%mx = n
     balls%my = n

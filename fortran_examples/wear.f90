@@ -1,5 +1,6 @@
-! Wear: a steel ball of radius 5 mm, held still on a steel disc that slides past it, 50 N, in 100 steps of 0.5 mm. After each step the depth
-! of wear, K/H p |s|, comes off the ball: it is added to the undeformed distance. The contact area grows, and the pressures fall. In m, N and Pa.
+! Wear: a steel ball of radius 5 mm does not move, and is pressed by 50 N onto a steel disc that slides past it in 100 steps of 0.5 mm. After each
+! step the depth of wear of the ball, K/H p |s|, is added to the undeformed distance. The contact area grows, and the pressures decrease. Units
+! are m, N and Pa.
 program wear_of_a_ball
   use, intrinsic :: iso_c_binding
   use contact_normal

@@ -1,5 +1,5 @@
-! A real wheel on a real rail, pressed together by a given force: reads undeformed distances and what the CONTACT
-! program found for them, and solves the contact with norm_solve.
+! A real wheel on a real rail under a given force: reads the undeformed distances and the result of the program CONTACT, and solves the contact with
+! norm_solve.
 ! Usage: wheel_rail data/wheel_rail/y0_10kN.txt [file for the arrays]
 program wheel_rail
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
@@ -29,7 +29,7 @@ program wheel_rail
   print '(a, 2f12.6)', "approach       mm     ", pen, approach
   print '(a, 2f12.2)', "max pressure   N/mm2  ", maxval(ps), maxval(reference)
   print '(a, 2i12)', "contact        elements", count(igs > 0), count(in_contact > 0)
-  ! The reference was computed to 1e-7.
+  ! The reference has a tolerance of 1e-7.
   print '(2a)', "pressures differ by less than 1e-6 of the largest: ", &
     trim(merge("yes", "no ", all(abs(ps - reference) < 1e-6_c_double*maxval(reference))))
   call write_arrays()
@@ -64,7 +64,7 @@ contains
     stop 1
   end subroutine
 
-  ! "mx my dx dy approach", then "h p contact" of each element.
+  ! Writes "mx my dx dy approach", then "h p contact" of each element.
   subroutine write_arrays()
     character(1000) :: name
     integer :: unit, ix, iy

@@ -1,4 +1,5 @@
-"""A sphere that sticks: loading and unloading beside JKR, Maugis and DMT; a rough surface from weak to sticky: `python3 adhesion.py [FOLDER]`."""
+"""A sphere with adhesion, loaded and unloaded, compared with the theories JKR, Maugis and DMT; a rough surface from weak to strong adhesion.
+`python3 adhesion.py [FOLDER]`: the folder gets the pictures."""
 
 import sys
 
@@ -6,28 +7,28 @@ import numpy as np
 
 import contact_normal as cn
 
-# Units of Johnson, Kendall and Roberts: R = 1, w = 1/pi, K = 4/3 E* = 1: forces in pi w R, approaches in (pi^2 w^2 R/K^2)^(1/3).
+# Units of Johnson, Kendall and Roberts: with R = 1, w = 1/pi and K = 4/3 E* = 1, forces are in pi w R, and approaches in (pi^2 w^2 R/K^2)^(1/3).
 WORK, E_STAR, TABOR = 1 / np.pi, 0.75, 3.0
 RANGE = (WORK / E_STAR) ** (2 / 3) / TABOR
 M, HALF_WIDTH = 128, 2.0
-# Rough: elements, mean pressures over E*, works of adhesion over the energy of full contact.
+# The rough surface: elements along a side, mean pressures over E*, works of adhesion over the elastic energy of full contact.
 N, MEANS, PARTS = 128, (0.0005, 0.001, 0.002, 0.004, 0.006, 0.008), (0.0, 0.03, 0.1, 0.2, 0.4)
 
 
 def jkr():
-    """Approach and force by the radius of contact."""
+    """The approaches and forces of the theory JKR for several contact radii."""
     a = np.linspace(0.31, 1.9, 200)
     return a**2 - 2 / 3 * np.sqrt(6 * a), a**3 - a * np.sqrt(6 * a)
 
 
 def dmt():
-    """The same: Hertz, less 2 pi w R."""
+    """The approaches and forces of the theory DMT: those of Hertz, less the force 2 pi w R."""
     a = np.linspace(0.0, 1.1, 50)
     return a**2, a**3 - 2
 
 
 def maugis(strength):
-    """The same of a constant attraction, sharp at its end; strength: 2 sigma(0)."""
+    """The approaches and forces of Maugis' theory for an attraction that is constant up to its range; `strength` is 2 sigma(0)."""
     points = []
     for a in np.linspace(0.05, 1.9, 120):
         def condition(m):
@@ -44,7 +45,7 @@ def maugis(strength):
 
 
 def loop():
-    """Approaches and forces of one handle, first closer, then away."""
+    """The approaches and forces of steps of one solver: first the bodies come closer, then they go apart."""
     d = 2 * HALF_WIDTH / M
     x = (np.arange(M) - 0.5 * (M - 1)) * d
     h = (x[None, :] ** 2 + x[:, None] ** 2) / 2
@@ -59,7 +60,7 @@ def loop():
 
 
 def rough():
-    """Heights on a unit square that repeats itself: waves of random phases, rms slope 0.1."""
+    """Heights on a periodic unit square, waves of random phases with an rms slope of 0.1, and the energy per area that flattens them."""
     k = np.fft.fftfreq(N, 1 / N)
     number = np.hypot(k[:, None], k[None, :])
     inside = (number >= 4) & (number <= 16)
@@ -67,13 +68,13 @@ def rough():
     heights = np.fft.ifft2(waves).real
     slopes = [np.fft.ifft2(2j * np.pi * axis * np.fft.fft2(heights)).real for axis in (k[:, None], k[None, :])]
     heights *= 0.1 / np.sqrt(sum((slope**2).mean() for slope in slopes))
-    # What flattens it, an energy per area: E* q a^2/4 of a wave of wave number q and mean square a^2/2.
+    # To flatten a wave of amplitude a and wave number q takes the energy E* q a^2/8 per area: E* q/4 times its mean square a^2/2.
     wave = 2 * np.pi * number
     return heights, 0.25 * (wave * np.abs(np.fft.fft2(heights)) ** 2).sum() / N**4
 
 
 def weak_to_sticky():
-    """Contact area by the mean pressure, for works of adhesion from none to half of the energy that flattens the surface."""
+    """The contact area for several mean pressures and works of adhesion, from none to a large part of the energy that flattens the surface."""
     heights, full = rough()
     table = {}
     for part in PARTS:

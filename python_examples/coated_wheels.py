@@ -14,7 +14,7 @@ CREEPAGES = (0.002, 0.01, 0.03, 0.1)
 
 
 def rolled(h, tread, creepage):
-    """Steady rolling at a creepage, with its derivatives; without a tread wheels are rubber."""
+    """Solves steady rolling at a creepage, with the derivatives of the force. If `tread` is None, the whole wheels are rubber."""
     bodies = RUBBER if tread is None else STEEL
     layer = None if tread is None else (tread, RUBBER["shear_modulus"], RUBBER["poisson_ratio"])
     friction = dict(coefficient=MU, motion="STEADY_ROLLING", creepage=(-creepage, 0.0), sensitivities=True)
@@ -25,13 +25,13 @@ def rolled(h, tread, creepage):
 
 
 def of_springs(result, tread):
-    """The slope of the force of springs of 2 t/G, whose tractions grow from element to element behind the leading edge."""
+    """The slope of the force of two treads as beds of springs, with the compliance 2 t/G: tractions grow linearly behind the leading edge."""
     lengths = result.contact.sum(axis=1) * D
     return 0.5 * RUBBER["shear_modulus"] / (2 * tread) * (lengths * (lengths + D)).sum() * D
 
 
 def draw(picture, forces):
-    """Creep curves, one for each tread."""
+    """Draws the creep curves, one for each tread."""
     import matplotlib
 
     matplotlib.use("Agg")

@@ -7,14 +7,14 @@ import numpy as np
 
 import contact_normal as cn
 
-# A wheel on a rail: semi-axes along and across (mm), N, mu, N/mm2.
+# A wheel on a rail: semi-axes along and across the rolling direction in mm, the normal force in N, mu, and the shear modulus in N/mm2.
 CONTACT = dict(semi_axes=(6.4, 4.5), normal_force=82000.0, coefficient=0.3, shear_modulus=82000.0, poisson_ratio=0.28)
-# Kalker's coefficient of a circle, nu = 0.25 (Kalker 1990, appendix E).
+# Kalker's coefficient C11 of a circular contact for nu = 0.25 (Kalker 1990, appendix E).
 C11 = 4.12
 
 
 def table(progress=None):
-    """Creepages to full slip; only xi >= 0 and phi >= 0, for symmetry gives the others."""
+    """The table, with creepages up to full slip. It has only xi >= 0 and phi >= 0, because symmetry gives the other signs."""
     return cn.creep_force_table(xi=1.6 * np.linspace(0.0, 1.0, 13) ** 2, eta=[-0.3, -0.1, 0.0, 0.1, 0.3], phi=[0.0, 0.25, 0.5, 1.0],
                                 axis_ratio=[1.0, 2.0], poisson_ratio=[0.25, 0.3], elements=25, progress=progress)
 

@@ -12,7 +12,7 @@ M = 64
 
 
 def ball(radius, d):
-    """Undeformed distance of a ball on a plane, and the distances of a row of elements from its axis."""
+    """The undeformed distance of a ball on a plane with elements of size d, and the coordinates of the elements of a row."""
     x = (np.arange(M) - 0.5 * (M - 1)) * d
     return (x[None, :] ** 2 + x[:, None] ** 2) / (2 * radius), x
 
@@ -68,7 +68,7 @@ def row_tables():
     apart = np.arange(M)[None, :] - np.arange(M)[:, None]  # iy - jy
     print("curvature  approach  max pressure  contact area")
     for curvature in (0.0, 0.05, 0.1):
-        # What a pressure displaces along another normal is the cosine of what it would be in a plane.
+        # The displacement along a normal at an angle is that on a plane times the cosine of the angle.
         tables = np.cos(apart * dy * curvature)[:, :, None] * plane[apart + M]
         found = cn.solve(h, dx, dy, force=20000.0, row_tables=tables, **STEEL)
         print(f"{curvature:9.2f} {found.approach:9.6f} {found.report['max_pressure']:13.1f} {found.report['contact_area']:13.2f}")
@@ -86,7 +86,7 @@ def coatings():
 
 
 def curves(path, text, lines, across="x [mm]", quantity="pressure [N/mm²]", **of_legend):
-    """Pressures along a line of elements, one curve for each (name, places, pressures)."""
+    """Draws pressures along a line of elements, one curve for each (name, coordinates, pressures) in `lines`."""
     from matplotlib import pyplot
 
     figure, axes = pyplot.subplots(layout="constrained")
@@ -111,7 +111,7 @@ def draw_limits(path, limited):
 
 
 def draw_periods(path, periodic):
-    """Three by three periods at each load; where nothing touches there is no colour."""
+    """Draws three by three periods at each load. Elements without contact have no colour."""
     from matplotlib import pyplot
 
     figure, panels = pyplot.subplots(2, 3, figsize=(8.6, 6.2), layout="constrained")
@@ -132,7 +132,7 @@ def draw(folder, layered, limited, periodic, patched, tabled, coated):
     curves(f"{folder}/effects_layer.{ending}", "A ball on a plate with a thin compliant layer, 1000 N", layered, title="compliance")
     curves(f"{folder}/effects_coating.{ending}", "A ball on a plate with an elastic coating, 100 N", coated, title="shear modulus, thickness")
     curves(f"{folder}/effects_patches.{ending}", "Two balls side by side, 1000 N together", patched, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3)
-    # The differences from the plane, which is the first, are small.
+    # The differences from the pressures on a plane, the first case, are small, so these are drawn instead of the pressures.
     _, y, plane = tabled[0]
     curves(f"{folder}/effects_row_tables.{ending}", f"A roller in a groove, 20 kN; in a plane the largest pressure is {plane.max():.0f} N/mm²",
            [(name, y, p - plane) for name, y, p in tabled[1:]], across="y, along the section of the groove [mm]", quantity="pressure less that in a plane [N/mm²]")

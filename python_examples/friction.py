@@ -19,7 +19,7 @@ SLIDING = 0.75 * MOST / (MATERIAL["shear_modulus"] * CONTACT_RADIUS)  # the shif
 
 
 def ball():
-    """The undeformed distance, on elements that reach a tenth beyond the contact."""
+    """The undeformed distance of the ball on a grid that is a tenth larger than the contact."""
     d = 2.2 * CONTACT_RADIUS / ELEMENTS
     x = (np.arange(ELEMENTS) - 0.5 * (ELEMENTS - 1)) * d
     return (x[None, :] ** 2 + x[:, None] ** 2) / (2.0 * RADIUS), d
@@ -32,10 +32,10 @@ def solved(result):
 
 
 def push():
-    """A shift of the ball, and what is exact."""
+    """Shifts the ball, and compares the result with the exact solution."""
     h, d = ball()
     stick_radius = 0.5 * CONTACT_RADIUS
-    # The sign: body 1 moves to -x over body 2, and the force on it is to +x.
+    # Body 1 moves to -x over body 2, and the force on body 1 is to +x.
     shift = -SLIDING * (1.0 - (stick_radius / CONTACT_RADIUS) ** 2)
     friction = dict(coefficient=COEFFICIENT, creepage=(shift, 0.0))
     result = solved(cn.solve(h, d, d, force=NORMAL_FORCE, friction=friction, units=("mm", "N"), **MATERIAL))
@@ -48,12 +48,12 @@ def push():
 
 
 def loading(part):
-    """The shift at which a ball from rest carries this part of mu N."""
+    """The shift at which a ball that starts from rest carries this part of mu N."""
     return SLIDING * (1.0 - (1.0 - part) ** (2.0 / 3.0))
 
 
 def rock():
-    """Forces to and fro, each step from the tractions of the last: the hysteresis of Mindlin and Deresiewicz (1953)."""
+    """Applies forces to and fro, each step from the tractions of the one before: the hysteresis of Mindlin and Deresiewicz (1953)."""
     h, d = ball()
     top = 0.8
     to, fro = np.array([0.2, 0.4, 0.6, top]), np.array([0.6, 0.4, 0.2, 0.0, -0.2, -0.4, -0.6, -top])
@@ -72,14 +72,14 @@ def rock():
     print(f"{'force / (mu N)':>14}{'shift [um]':>14}{'exact [um]':>14}")
     for row in zip(parts, 1000.0 * np.array(found), 1000.0 * exact):
         print("{:>14.1f}{:>14.2f}{:>14.2f}".format(*(value + 0.0 for value in row)))
-    # Twice the integral of the shift on the way back, in closed form.
+    # The area of the loop in closed form: twice the integral of the shift over the force on the way back.
     area = MOST * (4.0 * top * loading(top) - 8.0 * SLIDING * (top - 0.6 * (1.0 - (1.0 - top) ** (5.0 / 3.0))))
     print(f"energy lost in a cycle: {lost:.3f} mJ by friction, {area:.3f} mJ is the area of the exact loop")
     return parts, np.array(found), exact
 
 
 def wheel():
-    """The wheel of wheel_rail.py, pushed along and across the rail."""
+    """Shifts the wheel of wheel_rail.py along and across the rail."""
     with open(WHEEL_RAIL, encoding="ascii") as file:
         numbers = [next(file) for _ in range(4)][3].split()
         h = np.loadtxt(file)[:, 0]

@@ -21,7 +21,7 @@ LOAD = {"mean_pressure": 100.0, "e_star": STEEL}  # N/mm2
 
 
 def ground(mx=64, my=48, d=0.002, seed=11):
-    """Heights of a ground face in mm, values[ix, iy]: scratches along x of some 0.15 um, faults and a tilt."""
+    """Makes the heights of a ground face in mm, values[ix, iy]: scratches along x of some 0.15 um, faults and a tilt."""
     rng = np.random.default_rng(seed)
     kx, ky = np.fft.fftfreq(2 * mx, d)[:, None], np.fft.fftfreq(2 * my, d)[None, :]
     k = np.hypot(3.0 * kx, ky)
@@ -37,12 +37,12 @@ def ground(mx=64, my=48, d=0.002, seed=11):
 
 
 def measured():
-    """Step 1: the array, turned, with the size of an element."""
+    """Step 1: reads the array, and gives it the order of its indices and the size of an element."""
     return surface.heights(np.load(HEIGHTS), size=SIZE, axes="xy", units=UNITS)
 
 
 def mistakes():
-    """The same load with one mistake each."""
+    """Solves the same load several times, each time with one mistake."""
     values, right = np.load(HEIGHTS), measured()
     found = surface.faults(right)
     level = surface.level(found.removed)
@@ -66,7 +66,7 @@ def mistakes():
 
 
 def draw(folder):
-    """The pictures of docs/heights_to_gap.md."""
+    """Draws the pictures of docs/heights_to_gap.md."""
     import matplotlib
 
     matplotlib.use("Agg")

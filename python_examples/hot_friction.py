@@ -1,5 +1,5 @@
-"""Friction that falls as the surfaces get warm: creep forces of a wheel that brakes at 30 m/s. The law is a program's own: turns of a solve, flash
-temperatures of its heat, and coefficients by these. `python3 hot_friction.py [picture.svg]`."""
+"""Friction that falls as the surfaces get warm: creep forces of a wheel that brakes at 30 m/s. The program iterates its own law: it solves, computes
+the flash temperatures by the frictional heat, and sets the coefficients by these. `python3 hot_friction.py [picture.svg]`."""
 
 import sys
 
@@ -19,7 +19,7 @@ def coefficient(rise):
 
 
 def rolled(solver, h, creepage):
-    """The result with the mu of its own temperature, the rise, the least mu and the turns that it takes."""
+    """Iterates until mu is that of the temperature. Returns the result, the temperature rise, the least mu and the number of iterations."""
     mu = np.full((MY, MX), COLD)
     for turn in range(1, TURNS + 1):
         friction = dict(coefficient=mu, motion="STEADY_ROLLING", creepage=(-creepage, 0.0), continues=turn > 1)
@@ -32,7 +32,7 @@ def rolled(solver, h, creepage):
         change = np.where(result.contact, coefficient(rise) - mu, 0.0)
         if np.abs(change).max() < ENOUGH:
             return result, rise, mu[result.contact].min(), turn
-        # More heat, less friction, less heat: a part of the change settles sooner than all of it.
+        # More heat means less friction, and this less heat, so whole changes overshoot. Taking a part of each change converges faster.
         mu = mu + PART * change
     sys.exit("turns do not settle")
 

@@ -1,9 +1,9 @@
-"""What accuracy costs, before it is paid for: the price list of a sphere on a flat, each row solved and compared with Hertz.
+"""The predicted costs of accuracy: the price list of a sphere on a flat, each row of which is solved and compared with Hertz.
 
     python3 price_list.py [picture.png]
 
-For each error of the force that is wanted: whether the grid and the tolerance of the price list give it. The picture, if named, has
-error against seconds: predicted, and true; the accuracy that is bought (0.1 %) is marked.
+For each wanted error of the force the program shows whether the grid and the tolerance of the price list reach it. The picture, if named, shows the
+predicted and the true errors over the seconds; an accuracy of 0.1 % is marked.
 """
 
 import sys
@@ -19,12 +19,12 @@ BOUGHT = 1e-3
 
 
 def undeformed_distance(x, y):
-    """At the centres (x, y) of elements."""
+    """h at the centres (x, y) of elements."""
     return CURVATURE * (x**2 + y**2)
 
 
 def pay(price):
-    """Seconds, the least of three times, and force on the grid, and to the tolerance, of a row of the price list."""
+    """Solves on the grid and with the tolerance of a row of the price list. Returns the seconds, the least of three, and the force."""
     my, mx = price.shape
     x, y = ((np.arange(m) + 0.5) * SIDE / m - 0.5 * SIDE for m in (mx, my))
     h = undeformed_distance(x[None, :], y[:, None])
@@ -33,7 +33,7 @@ def pay(price):
 
 
 def draw(prices, paid, path):
-    """Error against seconds."""
+    """Draws errors over seconds."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -53,7 +53,7 @@ def draw(prices, paid, path):
 
 
 def main(picture=None):
-    """The whole example."""
+    """Runs the example."""
     exact = contact_normal.hertz(CURVATURE, CURVATURE, approach=APPROACH, **STEEL)
     prices = contact_normal.cost_of_accuracy(
         undeformed_distance, SIDE / 16, SIDE / 16, shape=(16, 16), targets=TARGETS, approach=APPROACH, **STEEL

@@ -18,8 +18,8 @@ LOAD, SPEED = 80e3, 30e3  # N; mm/s
 
 
 def arcs(y, z, angle, parts, step=0.25):
-    """Points of lines and arcs that pass into each other, walked towards larger y. `parts` are (length, None) of a line and (radius, angle)
-    of an arc that ends at that angle; angles are those of the slope dz/dy."""
+    """The points of lines and arcs with common tangents, in the order of growing y, from (y, z) and a first angle on. `parts` are (length, None)
+    for a line, and (radius, angle) for an arc that ends at this angle. The tangent of an angle is the slope dz/dy."""
     points = [(y, z)]
     for size, end in parts:
         length = size if end is None else size * abs(end - angle)
@@ -37,21 +37,22 @@ def arcs(y, z, angle, parts, step=0.25):
 
 
 def made_rail():
-    """A head of radii 300, 80 and 13 between flanks of 1:20, upright: half of it, and its mirror image."""
+    """A rail without inclination: a head with radii of 300, 80 and 13 mm between flanks of 1:20. One half is made, and mirrored."""
     half = arcs(0.0, 0.0, 0.0, [(300.0, np.arcsin(10.3 / 300.0)), (80.0, 0.23), (13.0, np.arctan(20.0)), (22.0, None)])
     return np.concatenate([half[:0:-1] * [-1.0, 1.0], half])
 
 
 def made_wheel():
-    """From the flange back: a tip of radius 14, a flank of 70 degrees, a throat of radius 16, a hollow tread of radius 540, and 1:50 at the end."""
+    """A wheel from the flange back on: a tip of radius 14 mm, a flank of 70 degrees, a throat of radius 16 mm, a hollow tread of radius 540 mm, and 1:50
+    at the end."""
     parts = [(14.0, -np.deg2rad(70.0)), (8.0, None), (16.0, -0.10), (540.0, -0.02), (40.0, None)]
     points = arcs(-70.0, 0.0, 1.45, parts)
-    # The nominal radius is that at y = 0.
+    # The profile is moved so that z = 0 at y = 0, where the wheel has its nominal radius.
     return points - [0.0, np.interp(0.0, *points.T)]
 
 
 def write(path, points, kind):
-    """A file of SIMPACK's kind: only what a reader needs."""
+    """Writes a file in the format of SIMPACK, with the entries that a reader needs."""
     lines = [f"header.begin\n  version = 1\n  type = {kind}   ! 0=rail profile, 1=wheel profile\nheader.end\nspline.begin",
              "  units.len.f = 1.0e+03\n  point.begin", *(f"    {y:.7f} {z:.7f}" for y, z in points), "  point.end\nspline.end\n"]
     with open(path, "w", encoding="ascii") as file:
@@ -59,7 +60,7 @@ def write(path, points, kind):
 
 
 def bodies():
-    """Steps 1 and 2: the profiles in their places. The rail is still upright."""
+    """Steps 1 and 2: the track and the wheelset. The profile of the rail is not inclined yet."""
     track = profiles.Track(profiles.read(os.path.join(PROFILES, "arcs.prr")), gauge=1435.0, inclination=1.0 / 40.0)
     wheelset = profiles.Wheelset(profiles.read(os.path.join(PROFILES, "arcs.prw")), radius=460.0, flange_back=1360.0)
     return track, wheelset
@@ -69,7 +70,7 @@ def rolling(track, wheelset, y, yaw=0.0):
     """Steps 3 to 5: position, contact points, pressures and creep forces of the right wheel."""
     position = profiles.settled(track, wheelset, y, yaw)
     left, point = (profiles.contact_points(track, wheelset, position, side)[0] for side in ("left", "right"))
-    # The wheelset rolls freely: on the mean of both radii.
+    # A wheelset that rolls freely turns as a wheel with the mean of both rolling radii.
     rate = SPEED / (0.5 * (left.rolling_radius + point.rolling_radius))
     xi, eta, phi = point.creepages(SPEED, pitch_rate=rate)
     friction = {"coefficient": 0.3, "motion": "STEADY_ROLLING", "creepage": (xi, eta), "spin": phi}
@@ -80,7 +81,7 @@ def rolling(track, wheelset, y, yaw=0.0):
 
 
 def hundredths(value):
-    """Rounded, without a sign of zero."""
+    """The value rounded to hundredths, where -0 becomes 0."""
     return round(value, 2) + 0.0
 
 
@@ -94,7 +95,7 @@ def table(track, wheelset):
 
 
 def draw(folder):
-    """The pictures of docs/profiles_to_gap.md."""
+    """Draws the pictures of docs/profiles_to_gap.md."""
     import matplotlib
 
     matplotlib.use("Agg")

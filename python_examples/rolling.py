@@ -20,19 +20,19 @@ def solved(result):
 
 
 def carter(x, a, stick):
-    """Carter's tractions over mu times the largest pressure: the difference of two ellipses, which touch at the leading edge x = a."""
+    """Carter's tractions, over mu times the largest pressure: the difference of two half-ellipses with a common leading edge x = a."""
     slip = np.sqrt(np.maximum(1.0 - (x / a) ** 2, 0.0))
     return slip - stick / a * np.sqrt(np.maximum(1.0 - ((x - a) / stick + 1.0) ** 2, 0.0))
 
 
 def cylinder(radius=500.0, width=200.0, force=35780.0, creepage=-0.00024, elements=55):
-    """One row of elements, long across: Carter (1926) is exact for a cylinder without ends."""
+    """Compares a cylinder, one row of elements that are long across, with Carter (1926), whose solution is exact for a cylinder without ends."""
     dx = 2.2 / elements
     x = (np.arange(elements) + 0.5) * dx - 1.07
     friction = dict(ROLLING, creepage=(creepage, 0.0))
     result = solved(cn.solve((x**2 / (2.0 * radius))[None, :], dx, width, force=force, friction=friction, **STEEL))
     found, report = result.traction[0, 0], result.report
-    # Half the contact, half the stick area.
+    # The half-width a of the contact, and that of the stick area.
     mu, modulus = ROLLING["coefficient"], STEEL["shear_modulus"] / (1.0 - STEEL["poisson_ratio"])
     a = np.sqrt(4.0 * force / width * radius / (np.pi * modulus))
     stick = a - radius * abs(creepage) / mu
@@ -56,7 +56,7 @@ def wheel():
 
 
 def curve():
-    """Longitudinal creepages from zero to full slip, and the slope at zero: there nothing slips, so it is that of Kalker's linear theory."""
+    """The forces for longitudinal creepages from zero to full slip, and the slope at zero, where nothing slips: that of Kalker's linear theory."""
     surface, scene = wheel()
     creepages = -2.5e-3 * np.linspace(0.0, 1.0, 25) ** 2
     entries = np.outer(creepages, (1.0, 0.0, 0.0))
@@ -75,7 +75,7 @@ def curve():
 
 
 def spinning():
-    """A creepage and a spin; CONTACT printed the results beside."""
+    """Solves a creepage with a spin, and prints the results beside those that CONTACT prints."""
     surface, scene = wheel()
     friction = dict(ROLLING, creepage=(0.0005, 0.0), spin=0.0003, spin_centre=(0.0, 2.1))
     result = solved(cn.solve(*surface, friction=friction, tolerance=1e-9, units=("mm", "N"), **scene))

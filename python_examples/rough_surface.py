@@ -11,7 +11,7 @@ import contact_normal as cn
 WAVES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "rough", "self_affine.txt")
 M, SIDE = 256, 1.0  # elements, and mm, along each side
 E_STAR = 1.0e3  # N/mm2
-# Mean pressures over E*: up to a fifth of the surface touches.
+# The mean pressures over E*. Up to a fifth of the surface is in contact.
 LOADS = (0.001, 0.002, 0.004, 0.007, 0.01)
 
 
@@ -20,7 +20,7 @@ def heights():
     spectrum = np.zeros((M, M), dtype=complex)
     for ky, kx, re, im in np.loadtxt(WAVES):
         spectrum[int(ky) % M, int(kx) % M] += re + 1j * im
-    # The surface is sampled at the middles of elements, half an element from the origin.
+    # The heights are those at the centres of the elements, so the waves are shifted by half an element.
     k = np.fft.fftfreq(M, 1.0 / M)
     half = np.exp(1j * np.pi * (k[:, None] + k[None, :]) / M)
     return SIDE * 2.0 * M * M * np.fft.ifft2(spectrum * half).real
@@ -31,8 +31,8 @@ def main(picture=None):
     slopes = np.gradient(z, SIDE / M, axis=1), np.gradient(z, SIDE / M, axis=0)
     slope = np.sqrt(np.mean(slopes[0] ** 2 + slopes[1] ** 2))
     print(f"rms height {1000.0 * z.std():.2f} um, rms slope {slope:.3f}, {M} x {M} elements, E* = {E_STAR:g} N/mm2")
-    # Theories of small loads have kappa = area times slope over mean pressure/E*: Persson sqrt(8/pi) = 1.6, Bush, Gibson and Thomas
-    # sqrt(2 pi) = 2.5.
+    # kappa is the part of the area in contact times the rms slope, over the mean pressure/E*. Theories for small loads give constants: Persson
+    # sqrt(8/pi) = 1.6, Bush, Gibson and Thomas sqrt(2 pi) = 2.5.
     print(f"{'mean pressure/E*':>16}{'area [%]':>10}{'p max/E*':>10}{'kappa':>8}")
     results = []
     for load in LOADS:

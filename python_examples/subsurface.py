@@ -20,7 +20,7 @@ def ball():
 
 
 def wheel_on_rail(path):
-    """A measured case (see data/wheel_rail): the wheel, body 1, rolls along x with creepages and spin; friction of .3."""
+    """Solves a measured contact (see data/wheel_rail): the wheel, body 1, rolls along x with creepages and spin; the friction coefficient is 0.3."""
     rows = [line for line in Path(path).read_text().splitlines() if not line.startswith("#")]
     mx, my, dx, dy, _, force, modulus, ratio = (float(word) for word in rows[0].split())
     h = np.array([float(word) for row in rows[1:] for word in row.split()[:1]]).reshape(int(my), int(mx))
@@ -29,7 +29,7 @@ def wheel_on_rail(path):
 
 
 def finer(result, coarse):
-    """The largest von Mises stress between the depths: once more with depths up to the neighbours of the one that has it."""
+    """Refines the largest von Mises stress: computes the stresses again at depths between the neighbours of the depth that has it."""
     k, depths = int(coarse.largest_von_mises["depth"]), coarse.depths
     between = np.linspace(depths[max(k - 1, 0)], depths[min(k + 1, len(depths) - 1)], 21)
     return result.subsurface(between).largest_von_mises

@@ -2,8 +2,8 @@
 
     python3 to_accuracy.py [arrays]
 
-For each target: the grid that was taken, and whether the estimate and the exact solution of Hertz meet it. `arrays`, if named,
-gets the last solution: a line "mx my dx dy approach" and one line "h p contact" per element, x fastest.
+For each target the program prints the last grid, and whether the estimated error and the difference from the exact solution of Hertz meet the target.
+`arrays`, if named, gets the last solution: a line "mx my dx dy approach", then one line "h p contact" per element, x fastest.
 """
 
 import sys
@@ -15,12 +15,12 @@ STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
 
 
 def undeformed_distance(x, y):
-    """At the centres (x, y) of elements."""
+    """h at the centres (x, y) of elements."""
     return CURVATURE_X * x**2 + CURVATURE_Y * y**2
 
 
 def solve(target):
-    """On [-10, 10] x [-6, 6] mm, centred on (0, 0)."""
+    """Solves on [-10, 10] x [-6, 6] mm, around (0, 0), to a relative error of the force."""
     return contact_normal.solve_to_accuracy(
         undeformed_distance,
         20.0 / 16,
@@ -35,7 +35,7 @@ def solve(target):
 
 
 def write_arrays(path, result):
-    """For those who check the result: repr() keeps every bit."""
+    """Writes the arrays for a check of the result. repr() keeps every bit."""
     my, mx = result.pressure.shape
     with open(path, "w", encoding="ascii") as file:
         print(mx, my, repr(result.dx), repr(result.dy), repr(result.approach), file=file)
@@ -47,7 +47,7 @@ def write_arrays(path, result):
 
 
 def main(arrays=None):
-    """The whole example."""
+    """Runs the example."""
     exact = contact_normal.hertz(CURVATURE_X, CURVATURE_Y, approach=APPROACH, **STEEL)
     print(f"{'target':>8}{'elements':>14}{'force [N]':>12}{'met by estimate':>18}{'met in fact':>14}")
     for target in (1e-2, 1e-3, 1e-4):

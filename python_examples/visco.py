@@ -6,7 +6,7 @@ import numpy as np
 
 import contact_normal as cn
 
-# G(t) = 1 + 4 exp(-t/0.3) + 3 exp(-t/3): 8 N/mm2 at once, 1 in the end.
+# The relaxation modulus is G(t) = 1 + 4 exp(-t/0.3) + 3 exp(-t/3) N/mm2: 8 N/mm2 at t = 0, and 1 N/mm2 in the end.
 G, MODULI, TIMES = 8.0, np.array([4.0, 3.0]), np.array([0.3, 3.0])
 RADIUS, SPEED, TURN = 10.0, 0.2, 1.0
 M, HALF_WIDTH = 64, 3.0
@@ -26,7 +26,7 @@ def integral(a, b, f):
 
 
 def ting(t):
-    """The force: while the ball goes back, the contact is as large as it was at an earlier time t1."""
+    """The force at the time t by Ting's solution. While the ball goes back, the contact is as large as it was at an earlier time t1."""
     t1 = t
     if t > TURN:
         def left(s):
@@ -38,12 +38,12 @@ def ting(t):
             middle = 0.5 * (low + high)
             low, high = (middle, high) if left(middle) > 0 else (low, middle)
         t1 = low
-    # s = v^2.
+    # The integral over the time s, with the substitution s = v^2.
     return 16 * np.sqrt(RADIUS) / 3 * integral(0, np.sqrt(t1), lambda v: modulus(t - v * v) * 3 * SPEED**1.5 * v * v)
 
 
 def cycle(step, form="AUTO"):
-    """Times, forces and estimated errors of the steps of one handle."""
+    """Solves all steps by one solver. Returns their times, forces and estimated errors."""
     d = 2 * HALF_WIDTH / M
     x = (np.arange(M) - 0.5 * (M - 1)) * d
     h = (x[None, :] ** 2 + x[:, None] ** 2) / (2 * RADIUS)

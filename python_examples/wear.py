@@ -15,7 +15,7 @@ TURNS, STEPS, SHOWN = 40.0, 100, (1, 20, 50, 100)
 
 
 def wear():
-    """Solves, takes off each row what a point loses in some turns, and again."""
+    """Repeats: solves, and removes from each row of the roller the depth of wear of a point in some turns."""
     x, y = (np.arange(MX) - 0.5 * (MX - 1)) * DX, (np.arange(MY) - 0.5 * (MY - 1)) * DY
     worn = np.zeros(MY)
     shown, volume = {}, 0.0

@@ -12,20 +12,20 @@ import numpy as np
 import contact_normal
 
 TARGET = 1e-2
-# The small grids may be the whole one, whatever the machine: what is printed does not depend on it.
+# With so many seconds the small grids may be refined up to the grid of the scene on any machine, so that the output does not depend on the machine.
 WHOLE = {"target": TARGET, "max_seconds": 600.0, "pairs": False}
 M = 64
 
 
 def paraboloid(radius_x, radius_y, side_x, side_y):
-    """h, dx, dy of a surface with two radii."""
+    """h, dx and dy of a paraboloid with two radii, over a rectangle with these sides."""
     dx, dy = side_x / M, side_y / M
     x, y = ((np.arange(M) - 0.5 * (M - 1)) * d for d in (dx, dy))
     return x[None, :] ** 2 / (2.0 * radius_x) + y[:, None] ** 2 / (2.0 * radius_y), dx, dy
 
 
 def rough(rms, side, seed=5):
-    """A self-affine surface of Hurst exponent 0.8, periodic; h, dx, dy."""
+    """h, dx and dy of a periodic self-affine surface with a Hurst exponent of 0.8."""
     wave = np.hypot(*np.meshgrid(np.fft.rfftfreq(M) * M, np.fft.fftfreq(M) * M))
     amplitude = np.where((wave >= 2) & (wave <= 16), np.maximum(wave, 1.0) ** -1.8, 0.0)
     phase = np.exp(2j * np.pi * np.random.default_rng(seed).random(wave.shape))
@@ -35,7 +35,7 @@ def rough(rms, side, seed=5):
 
 
 def scenes():
-    """Name, surface and what else `what_matters` takes. mm and N, but for the tip: nm and nN."""
+    """Yields for each scene its name, its surface and the other arguments of `what_matters`. Units are mm and N; for the tip nm and nN."""
     steel = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
     # A steel ball of 5 mm radius with 3 um of hard carbon, on steel.
     yield ("coated ball", *paraboloid(5.0, 5.0, 0.3, 0.3)), {
@@ -47,7 +47,7 @@ def scenes():
         "friction": {"coefficient": 0.3, "motion": "STEADY_ROLLING", "creepage": (-1e-3, 0.0), "spin": 2e-4},
         "quantities": ("approach", "max_pressure", "tangential_force"),
     }
-    # A seal of PTFE on a lathed face: it yields at 60 N/mm2, a film of 0.1 um gives way.
+    # A seal of PTFE on a lathed face, which yields at 60 N/mm2, with the compliance of a film of 0.1 um.
     yield ("rough seal", *rough(4e-4, 0.2)), {
         "mean_pressure": 8.0, "e_star": 600.0, "period": "xy", "pressure_limit": 60.0, "layer": 2e-8,
         "quantities": ("contact_area", "mean_gap"),
@@ -67,7 +67,7 @@ def scenes():
 
 
 def main(picture=None):
-    """The whole example."""
+    """Runs the example."""
     print(f"{'scene':16}{'without':20}{'changes most':>18}{'by':>10}  at 1 %")
     for (name, *surface), given in scenes():
         wanted = [{"approach": "force"}.get(each, each) for each in given.pop("quantities", ("approach", "max_pressure", "contact_area"))]

@@ -17,7 +17,7 @@ DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "w
 
 
 def read(path):
-    """The scene of a data file and the reference in it; lengths in mm, forces in N."""
+    """Reads the scene of a data file and its reference solution. Lengths are in mm, forces in N."""
     with open(path, encoding="ascii") as file:
         title = [next(file) for _ in range(3)][0].lstrip("# ").strip()
         numbers = next(file).split()
@@ -30,7 +30,7 @@ def read(path):
 
 
 def compare(scene, h, reference, reference_contact, result):
-    """Prints ours and the reference side by side, with the digits that do not depend on the machine."""
+    """Prints the result and the reference side by side, with those digits that do not depend on the machine."""
     my, mx = h.shape
     print(f"wheel-rail contact, {mx} x {my} elements of {scene['dx']} mm x {scene['dy']} mm, force prescribed")
     print(f"{'':22}{'ours':>14}{'CONTACT':>14}")
@@ -51,7 +51,7 @@ def compare(scene, h, reference, reference_contact, result):
 
 
 def draw(path, title, result):
-    """Pressure and contact area, as seen from above."""
+    """Draws the pressures and the contact area in a view from above."""
     import matplotlib
 
     matplotlib.use("Agg")
@@ -66,7 +66,7 @@ def draw(path, title, result):
 
 
 def write_arrays(path, scene, h, result):
-    """For those who check the result: repr() keeps every bit."""
+    """Writes the arrays for a check of the result. repr() keeps every bit."""
     with open(path, "w", encoding="ascii") as file:
         my, mx = h.shape
         print(mx, my, repr(scene["dx"]), repr(scene["dy"]), repr(result.approach), file=file)
@@ -75,9 +75,9 @@ def write_arrays(path, scene, h, result):
 
 
 def main(data=DATA, picture="wheel_rail.png", arrays=None):
-    """The whole example."""
+    """Runs the example."""
     title, scene, h, reference, reference_contact = read(data)
-    # Pressures converge about two digits behind the residual; the reference is good to 1e-7 of the largest.
+    # The relative error of the pressures is about 100 times the residual. The reference is good to 1e-7 of the largest pressure.
     result = contact_normal.solve(
         h,
         scene["dx"],

@@ -1,4 +1,4 @@
-//! Set-up of coefficients, and solves of a ball on a coated body, each beside the plain scene.
+//! Times of coatings: the set-up of influence coefficients, and solves of a ball on a coated body, each compared with the scene without a coating.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Radial, Transfer};
@@ -13,7 +13,7 @@ fn scene(m: usize, h: &[f64], coating: Option<(f64, f64)>) -> Scene<'_> {
     scene_of(m, 1.0, h, coating)
 }
 
-/// On m x m elements of 1 x dy.
+/// A scene on m x m elements of the size 1 x dy; `coating`: the ratio of the shear moduli of coating and substrate, and the thickness.
 fn scene_of(m: usize, dy: f64, h: &[f64], coating: Option<(f64, f64)>) -> Scene<'_> {
     let grid = Grid::new(m, m, 1.0, dy).unwrap();
     let coating = coating.map(|(mu, t)| Coating::of_body_1(t, mu, NU));
@@ -46,11 +46,13 @@ pub fn report() {
     println!();
 }
 
-/// E* of the bodies without a coating, and h = r^2/(2 R).
+/// E* of the bodies without a coating.
 const E_STAR: f64 = 1.0 / (1.0 - NU);
+/// R of the ball, whose undeformed distance is h = r^2/(2 R).
 const RADIUS: f64 = 1000.0;
 
-/// A coated ball beside one without a coating whose contact area is as large, as products are on windows around it.
+/// Compares solves of a ball on a coated body and on a plain one, whose force is chosen so that both contact areas are equal: the cost of a product
+/// depends on the window around the contact.
 fn solves() {
     println!("\nA ball on a coated body, 256 x 256 elements, force given, tolerance 1e-6, one thread; beside the plain ball of the same area\n");
     println!(
@@ -66,7 +68,7 @@ fn solves() {
     {
         let coated = scene(m, &h, Some((mu, t)));
         let one = report(&coated);
-        // Hertz: F = 4/3 E* a^3/R.
+        // The force for a contact radius a: F = 4/3 E* a^3/R (Hertz).
         let a = (one.measures.contact_area / std::f64::consts::PI).sqrt();
         let plain = Scene { load: Load::Force(4.0 / 3.0 * E_STAR * a.powi(3) / RADIUS), ..scene(m, &h, None) };
         let other = report(&plain);

@@ -5,10 +5,10 @@ mod stress;
 
 use std::time::Instant;
 
-/// Runs that medians are taken of.
+/// The number of runs of which medians are taken.
 const RUNS: usize = 9;
 
-/// The medians of the seconds that each of these takes, in turns.
+/// Runs all programs in turns, and returns the median of the seconds of each.
 fn medians<const N: usize>(mut programs: [&mut dyn FnMut(); N]) -> [f64; N] {
     let mut seconds = [const { Vec::new() }; N];
     for _ in 0..RUNS {

@@ -1,4 +1,5 @@
-//! 128 x 128 elements, 32 depths, one thread: pressures alone, and with tractions; on a half-space, and with two periods.
+//! Times of subsurface stresses on 128 x 128 elements at 32 depths, with one thread: by pressures alone and with tractions, on a half-space and
+//! with two periods.
 
 use contact_normal::grid::Grid;
 use contact_normal::stress::{subsurface_stress, Body, Loads, Wanted};

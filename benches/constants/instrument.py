@@ -1,7 +1,8 @@
-"""Makes the constants of a copy of the source adjustable: `instrument.py COPY`, of a clone that is thrown away afterwards.
+"""Makes the constants in a copy of the source adjustable: `instrument.py COPY`, where COPY is a clone that is thrown away afterwards.
 
-Each `const NAME: f64 = ...;` (or u32, u64) of the solvers becomes a function that reads the environment once: CN_CONSTANT="solver/stages.rs:LEAST_SHARE=30" sets
-one, and CN_CONSTANTS_READ names a file in which each constant that is used has a line. Constants in array lengths, patterns and traits stay.
+Each `const NAME: f64 = ...;` (or u32, u64) of the solvers becomes a function that reads the environment once. CN_CONSTANT="solver/stages.rs:LEAST_SHARE=30"
+sets one constant. CN_CONSTANTS_READ names a file into which each constant that is used writes a line. Constants in array lengths, patterns and
+traits stay constants.
 """
 
 import pathlib
@@ -29,7 +30,7 @@ pub mod adjustable {
 
 
 def declared(root):
-    """{file: {name: whether it is public}}"""
+    """The constants that are made adjustable: {file: {name: whether it is public}}."""
     found = {}
     for path in sorted(root.rglob("*.rs")):
         name = path.relative_to(root).as_posix()
@@ -42,7 +43,7 @@ def declared(root):
 
 
 def rewritten(text, name, own, public):
-    """The text of a file with calls in place of constants."""
+    """The text of a file with functions in the place of its constants `own`, and calls in the place of their uses and those of `public` ones."""
     imports = [match.span() for match in USED.finditer(text)]
     imported = {word for a, b in imports for word in re.findall(r"\b[A-Z_0-9]{2,}\b", text[a:b])} & public
 
@@ -70,7 +71,7 @@ def rewritten(text, name, own, public):
 
 
 def main():
-    """Rewrites the copy."""
+    """Rewrites the files of the copy."""
     root = pathlib.Path(sys.argv[1]) / "src"
     constants = declared(root)
     public = {name for names in constants.values() for name, is_public in names.items() if is_public}

@@ -1,7 +1,8 @@
-"""What each constant of the solvers is worth: `run.py LIBRARY`, of a library that instrument.py has made adjustable.
+"""Measures how sensitive the solvers are to their constants: `run.py LIBRARY`, with a library that instrument.py has made adjustable.
 
-Each constant that a group of scenes uses is doubled and halved alone. A line: its value, and the products of all scenes of the group over those without the
-change, in brackets the largest factor of one scene; then the scenes whose status changes. "the same": not a product changes. Takes two hours of one core.
+Each constant that a group of scenes uses is doubled and halved, one constant at a time. Prints one line per constant: its value; the ratio of the
+products of all scenes of the group with and without the change, in brackets the largest ratio of one scene; the number of scenes whose status
+changes. "the same": no number of products changes. Takes two hours on one core.
 """
 
 import json
@@ -12,11 +13,11 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-PATIENCE = 60.0  # seconds; a group takes ten
+PATIENCE = 60.0  # the longest time for a group of scenes in seconds; it usually takes ten
 
 
 def run(group, library, **more):
-    """The scenes of a group; none: it did not end."""
+    """Solves the scenes of a group in a process, and returns their results; None if it does not end in time, or fails."""
     path = str(HERE.parents[1] / "python")
     env = {**os.environ, "CONTACT_NORMAL_LIBRARY": library, "PYTHONPATH": path, **more}
     try:
@@ -27,7 +28,7 @@ def run(group, library, **more):
 
 
 def compared(base, changed):
-    """A cell of the table."""
+    """A cell of the table: the results with a changed constant compared with those without the change."""
     if changed is None:
         return "does not end"
     pairs = [(base[name], changed[name]) for name in base]
@@ -40,7 +41,7 @@ def compared(base, changed):
 
 
 def main():
-    """The table."""
+    """Prints the table."""
     library = sys.argv[1]
     print("| constant | value | scenes | doubled | halved |\n|---|---:|---|---|---|")
     for group in ("normal", "friction", "adhesion"):

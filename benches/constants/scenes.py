@@ -1,5 +1,6 @@
-"""Scenes in three groups, solved by the library of CONTACT_NORMAL_LIBRARY: `scenes.py normal|friction|adhesion` prints JSON, for each scene its products, its
-status, and forces, approach and creepages."""
+"""Solves scenes of one of three groups by the library of CONTACT_NORMAL_LIBRARY: `scenes.py normal|friction|adhesion`.
+
+Prints JSON: for each scene the number of products, the status, and force, approach, tangential forces and creepages."""
 
 import json
 import sys
@@ -15,7 +16,7 @@ LOAD = 0.02
 
 
 def places(n):
-    """x and y of the elements of a square of side 1."""
+    """x and y of the centres of n x n elements of a square of side 1."""
     x = (np.arange(n) + 0.5) / n - 0.5
     return np.meshgrid(x, x)
 
@@ -31,7 +32,7 @@ def rough(n, seed, lowest=1):
 
 
 def solved(call, h, dx, dy, tolerance=None, **scene):
-    """What is compared of a scene."""
+    """Solves a scene, and returns the numbers that are compared: products, status, force, approach, and with friction forces and creepages."""
     try:
         r = call(h, dx, dy, **scene, **({} if tolerance is None else {"tolerance": tolerance}))
     except cn.ContactNormalError as error:
@@ -44,7 +45,7 @@ def solved(call, h, dx, dy, tolerance=None, **scene):
 
 
 def normal():
-    """Smooth, rough and noisy surfaces, punches, spikes, holes, limits, lines, coatings; steps in time."""
+    """Solves normal problems: smooth, rough and noisy surfaces, punches, spikes, holes, pressure limits, line contacts, coatings; steps in time."""
     scenes = []
 
     def add(name, h, dx, dy, **scene):
@@ -107,7 +108,7 @@ def normal():
 
 
 def motions(n, mu):
-    """Shifts and rolling, by motion and by force, with and without spin; some near full slip."""
+    """The friction arguments of shifts and rolling, by creepage and by force, with and without spin; some near full slip."""
     most = mu * LOAD
     return {
         "shift": dict(motion="SHIFT", creepage=(0.6 * mu * 0.05, 0.2 * mu * 0.05)),
@@ -123,7 +124,7 @@ def motions(n, mu):
 
 
 def friction():
-    """Like and unlike bodies, smooth and rough, with little and much friction; laws; larger grids."""
+    """Solves problems with friction: equal and different elastic constants, smooth and rough surfaces, little and much friction; laws; larger grids."""
     found = {}
 
     def add(name, h, **scene):
@@ -159,7 +160,7 @@ def friction():
 
 
 def adhesion():
-    """Five surfaces, three works, three ranges, two laws; pulls and pull-offs."""
+    """Solves problems with adhesion: five surfaces, three works of adhesion, three ranges, two laws; given pulls and pull-off forces."""
     found = {}
     for n in (24, 48):
         (x, y), d = places(n), 1 / n

@@ -1,9 +1,9 @@
-"""Adhesion beside tamaas: rough surfaces that repeat themselves, a mean pressure, the exponential law.
+"""Compares solves with adhesion with tamaas: periodic rough surfaces under a mean pressure, with the exponential law.
 
-`build/peers/bin/python benches/peers/adhesion.py [--largest 512]` after `make bench-peers`, or with numpy and tamaas. Prints a table. Both have
-the same heights, E*, work of adhesion and range, and one thread. tamaas goes down in decades of its tolerance until its own pressures and gap
-meet the law outside the contact to 1e-6; contact-normal has its tolerance of 1e-6 of the same measure. Each is repeated in turns; times are
-medians in seconds of the processor.
+`build/peers/bin/python benches/peers/adhesion.py [--largest 512]` after `make bench-peers`, or with numpy and tamaas. Prints a table. Both
+programs have the same heights, E*, work of adhesion and range, and one thread. For tamaas the loosest tolerance, in decades, is chosen with which
+its pressures and gap meet the law outside the contact to 1e-6; contact-normal has a tolerance of 1e-6 for the same measure. Calls are repeated in
+turns; times are medians of processor times.
 """
 
 import argparse
@@ -26,18 +26,18 @@ import tamaas  # noqa: E402
 import contact_normal  # noqa: E402
 
 LAW_RESIDUAL = 1e-6
-REPEATS, LONG = 3, 20.0  # seconds from which on one call is enough
+REPEATS, LONG = 3, 20.0  # a call of more than LONG seconds is not repeated
 KAPPA = 0.25
-# mean pressure over E*, work of adhesion over the elastic energy of full contact
+# Each scene: the mean pressure over E*, and the work of adhesion over the elastic energy of full contact.
 SCENES = [(0.001, 0.003), (0.001, 0.1), (0.004, 0.03), (0.004, 0.3)]
 
 
 def rough(n, seed=3, longest=4, shortest=16, hurst=0.8):
-    """Heights of rms slope 0.1 on a unit square, waves of random phases between two wave numbers."""
+    """Heights with an rms slope of 0.1 on a unit square: waves of random phases with wave numbers from `longest` to `shortest`."""
     k = np.fft.fftfreq(n, 1 / n)
     number = np.hypot(k[:, None], k[None, :])
     inside = (number >= longest) & (number <= shortest)
-    # Phases of the waves, not of the grid: the surface is the same on every grid.
+    # Each wave has its phase, whatever the grid is, so that the surface is the same on every grid.
     phases = np.random.default_rng(seed).uniform(0, 2 * np.pi, (2 * shortest + 1, 2 * shortest + 1))
     index = np.clip(k.astype(int), -shortest, shortest) + shortest
     waves = np.where(inside, number, 1.0) ** (-1 - hurst) * inside * np.exp(1j * phases[np.ix_(index, index)])
@@ -47,17 +47,17 @@ def rough(n, seed=3, longest=4, shortest=16, hurst=0.8):
 
 
 def scene(heights, adhesion_over_elastic):
-    """Work of adhesion and range, E* = 1."""
+    """The work of adhesion and the range of a scene with E* = 1."""
     n = len(heights)
     wave = 2 * np.pi * np.hypot(np.fft.fftfreq(n, 1 / n)[:, None], np.fft.rfftfreq(n, 1 / n)[None, :])
     pressures = np.fft.irfft2(np.fft.rfft2(heights) * wave / 2, s=heights.shape)
     work = adhesion_over_elastic * 0.5 * (heights * pressures).mean()
-    own = 4 / n * np.arcsinh(1) / np.pi  # what an element displaces itself by
-    return work, np.sqrt(work * own / KAPPA)
+    self_influence = 4 / n * np.arcsinh(1) / np.pi  # the displacement of an element by a unit pressure on itself
+    return work, np.sqrt(work * self_influence / KAPPA)
 
 
 def ours(heights, mean, work, reach):
-    """One whole call; seconds, contact area, law residual."""
+    """Makes one whole call of contact-normal. Returns its seconds, the contact area and the residual of the law."""
     n = len(heights)
     began = time.process_time()
     found = contact_normal.solve(
@@ -68,7 +68,7 @@ def ours(heights, mean, work, reach):
 
 
 def theirs(heights, mean, work, reach, tolerance):
-    """The same of tamaas, in gaps, as its example has it."""
+    """Makes the same call of tamaas, which minimises over gaps as in its example. Returns the same values."""
     began = time.process_time()
     model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [1.0, 1.0], list(heights.shape))
     model.E, model.nu = 1.0, 0.0
@@ -87,7 +87,7 @@ def theirs(heights, mean, work, reach, tolerance):
 
 
 def tolerance_of_peer(heights, mean, work, reach):
-    """The loosest tolerance that meets the law, and the seconds it took; none if there is none."""
+    """The loosest tolerance with which tamaas meets the law, and the seconds of its call; None if there is no such tolerance."""
     for tolerance in 10.0 ** -np.arange(3, 9):
         seconds, _, left = theirs(heights, mean, work, reach, tolerance)
         if left <= 1.1 * LAW_RESIDUAL:
@@ -96,7 +96,7 @@ def tolerance_of_peer(heights, mean, work, reach):
 
 
 def main():
-    """The table."""
+    """Prints the table."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--largest", type=int, default=512)
     largest = parser.parse_args().largest

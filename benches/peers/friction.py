@@ -1,11 +1,12 @@
-"""Friction beside aspher: a shift from rest, at an equal residual that is checked here.
+"""Compares solves with friction with aspher: a shift from rest, at an equal residual that this bench checks.
 
 `build/peers/bin/python benches/peers/friction.py [--largest 256 | --report]` after `make bench-peers`, or with the packages of
 `requirements.txt`. --largest: up to that size (512); --report: only writes again what build/friction_peers.json holds. Prints the table, writes it
 into docs/performance_peers.md; `make pictures` draws it.
 
-Both have two like bodies, the same h, the same load and one thread. Each goes down the same tolerances, aspher with one for
-each of the two problems, with its preconditioner and without; the fastest ones that reach an accuracy are repeated, both in turns. `tangential.py` has the check.
+Both programs have two bodies with equal elastic constants, the same h, the same load and one thread. Each is called with tighter and tighter
+tolerances; aspher has one tolerance for each of the two problems, and is called with its preconditioner and without. The fastest calls that reach
+an accuracy are repeated, those of both programs in turns. `tangential.py` has the check.
 """
 
 import gc
@@ -35,8 +36,8 @@ MU = 0.3
 TOLERANCES = [10 ** (-0.5 * k) for k in range(4, 20)]
 ACCURACIES = [1e-3, 1e-4, 1e-6]
 REPEATS, LONG, REPEATS_OF_LONG, LONGEST = 5, 8.0, 2, 30.0
-STALLED = 3  # so many tighter tolerances without a smaller error end a search
-# surface, Poisson ratio, what is given, which part of mu N
+STALLED = 3  # a search ends after this number of tighter tolerances without a smaller error
+# Each scene: the surface, the Poisson ratio, what is given, the tangential force as a part of mu N.
 SCENES = [
     ("ball", 0.0, "motion", 0.5),
     ("ball", 0.0, "motion", 0.9),
@@ -53,7 +54,7 @@ HEADING = "## Friction\n"
 
 
 def ours(shift, tolerance, _):
-    """Seconds of the normal problem alone and of both, pressures, tractions, shift."""
+    """Calls contact-normal. Returns the seconds of the normal problem alone and of both problems, the pressures, the tractions, and no shift."""
     problem = shift.normal
     scene = dict(force=problem.force, shear_modulus=shift.shear_modulus, poisson_ratio=shift.poisson_ratio, tolerance=tolerance, threads=1)
     given = dict(force=(shift.force, 0.0)) if shift.shift is None else dict(creepage=(-shift.shift[0], -shift.shift[1]))
@@ -66,7 +67,7 @@ def ours(shift, tolerance, _):
 
 
 def peer(shift, tol_normal, tol_tangential, preconditioned):
-    """The same of aspher: its setting up and its normal step, and these with its tangential step."""
+    """Calls aspher. Returns the seconds of its set-up and normal step, those with its tangential step, the pressures, the tractions and the shift."""
     problem = shift.normal
     began = time.process_time()
     solver = aspher.FrictionSolver(grid_size=problem.h.shape[0], domain_size=problem.sides[0], E_star=problem.modulus, nu=shift.poisson_ratio,
@@ -83,12 +84,12 @@ def peer(shift, tol_normal, tol_tangential, preconditioned):
 
 
 OURS = "contact-normal"
-# program -> setting -> call
+# The calls: {program: {setting: call}}.
 PROGRAMS = {OURS: {"": ours}, "aspher": {"preconditioned": lambda *given: peer(*given, True), "plain": lambda *given: peer(*given, False)}}
 
 
 def scene(surface, poisson_ratio, given, part, size):
-    """The scene; the shift that brings this part of mu N is found by a force that is given."""
+    """The scene with a force of this part of mu N. If the motion is given, its shift is found first by a solve with this force."""
     normal = {"ball": sphere, "rough": rough}[surface](size)
     shift = Shift(normal, poisson_ratio, MU, force=part * MU * normal.force)
     if given == "motion":
@@ -99,7 +100,10 @@ def scene(surface, poisson_ratio, given, part, size):
 
 
 def search(name, setting, shift, accuracy, start):
-    """Points (tolerances, their places, seconds, errors), from loose to tight, until both errors reach the accuracy."""
+    """Solves with tighter and tighter tolerances until both errors reach the accuracy. Returns the points: tolerances, their indices, seconds, errors.
+
+    `start` has the indices of the first tolerances of the normal and of the tangential problem.
+    """
     points, places = [], list(start)
     while max(places) < len(TOLERANCES):
         gc.collect()
@@ -124,7 +128,7 @@ def search(name, setting, shift, accuracy, start):
 
 
 def measure(surface, poisson_ratio, given, part, size):
-    """One scene: searches, then repeats in turns."""
+    """Measures one scene: searches the loosest tolerances for each accuracy, then repeats these calls in turns."""
     print(f"{surface} {size}, nu {poisson_ratio}, {given}, {part:.0%}", flush=True)
     shift = scene(surface, poisson_ratio, given, part, size)
     least, chosen, runs = {}, {}, {}
@@ -155,17 +159,17 @@ def measure(surface, poisson_ratio, given, part, size):
 
 
 def shown(seconds):
-    """Three figures, in milliseconds."""
+    """A time in milliseconds with three figures, as text."""
     return f"{seconds * 1e3:.3g}" if seconds < 1 else f"{seconds * 1e3:.0f}"
 
 
 def section(measured):
-    """The text of docs/performance_peers.md."""
+    """The section on friction of docs/performance_peers.md."""
     lines = ["| scene, nu | given | accuracy | contact-normal, ms: normal, tangential, both | aspher, ms (its setting, tolerances) | "
              "times slower: tangential | both |", "|---|---|---|---:|---:|---:|---:|"]
     ratios = {}
     for one in measured:
-        other_gone = False  # where an accuracy is not reached, tighter ones are left out
+        other_gone = False  # Whether aspher did not reach the accuracy before: tighter ones are then left out.
         for accuracy in ACCURACIES:
             mine, other = (one["results"].get(f"{name} {accuracy:.0e}") for name in PROGRAMS)
             start = f"| {one['surface']} {one['size']}, {one['poisson_ratio']} | {one['part']:.0%}, {one['given']} | {accuracy:.0e} |"
@@ -205,7 +209,7 @@ def section(measured):
 
 
 def report():
-    """The table."""
+    """Writes the section into the page, and prints it."""
     with open(RESULTS, encoding="utf-8") as file:
         measured = json.load(file)
     text = section(measured)

@@ -1,7 +1,7 @@
-"""One problem: `python measure.py PROBLEM SIZE SOLVER,SOLVER,... OUT.json`.
+"""Measures solvers on one problem: `python measure.py PROBLEM SIZE SOLVER,SOLVER,... OUT.json`.
 
-First every setting of every solver goes down its ladder of tolerances; each result is checked. Then, for each accuracy asked for,
-each solver's fastest setting at its loosest tolerance that reached it is repeated, all solvers in turns.
+First every setting of every solver is called with a sequence of tighter and tighter tolerances, and each result is checked. Then for each wanted
+accuracy the fastest setting of each solver, with its loosest tolerance that reaches the accuracy, is repeated, all solvers in turns.
 """
 
 import gc
@@ -19,16 +19,16 @@ from problems import PROBLEMS
 from solvers import SOLVERS
 
 ACCURACIES = [1e-4, 1e-6]
-TIGHTEST = 1e-7  # the ladders of fast settings go down to this error, for the picture
+TIGHTEST = 1e-7  # fast settings are called until this error is reached, for the picture
 REPEATS = 5
-LONG, REPEATS_OF_LONG = 8.0, 2  # seconds
-LONGEST = 120.0  # a call that takes longer ends its setting's ladder, and is not repeated
-COARSE_STEPS = 3.0  # from so many seconds a call on, every second tolerance
-HOPELESS = 2.0  # a setting is given up at so many times what another of its solver needed for the tightest accuracy
+LONG, REPEATS_OF_LONG = 8.0, 2  # calls of more than LONG seconds are repeated less often
+LONGEST = 120.0  # a call of more seconds is the last one of its setting, and is not repeated
+COARSE_STEPS = 3.0  # if calls take more seconds than this, only every second tolerance is tried
+HOPELESS = 2.0  # a setting is given up if it takes this many times as long as another setting of the solver for the tightest accuracy
 
 
 class TooLong(Exception):
-    """Raised by the alarm, where the solver runs Python now and then."""
+    """Raised by the alarm signal during a call. Python handles the signal as soon as the solver returns to Python."""
 
 
 def _alarm(_signal, _frame):
@@ -36,7 +36,10 @@ def _alarm(_signal, _frame):
 
 
 def timed(call, problem, tolerance):
-    """Seconds of the processor (one thread: what a quiet machine's clock would say), seconds of the clock, pressures."""
+    """Makes a call. Returns its processor time, its wall-clock time and the pressures.
+
+    With one thread the processor time is what the wall-clock time would be on a quiet machine.
+    """
     gc.collect()
     signal.setitimer(signal.ITIMER_REAL, LONGEST)
     clock, processor = time.perf_counter(), time.process_time()
@@ -48,7 +51,10 @@ def timed(call, problem, tolerance):
 
 
 def ladder(name, setting, call, tolerances, problem, least):
-    """Points (tolerance, seconds, error), until they are accurate enough, or `least` seconds are far exceeded."""
+    """Calls a setting with tighter and tighter tolerances until it is accurate enough, or takes much longer than `least` seconds.
+
+    Returns the points: setting, tolerance, seconds, error.
+    """
     points = []
     halves = len(tolerances) > 1 and tolerances[0] / tolerances[1] < 5
     for step, tolerance in enumerate(tolerances):
@@ -82,7 +88,7 @@ def main():
         settings, tolerances = SOLVERS[name]
         small = PROBLEMS[kind](64)
         for setting, call in settings.items():
-            call(small, 1e-2)  # what is loaded once is loaded now
+            call(small, 1e-2)  # A first call loads libraries, whose time must not count.
         points[name] = []
         for setting, call in settings.items():
             reached = [point["seconds"] for point in points[name] if point["error"] <= min(ACCURACIES)]

@@ -1,4 +1,4 @@
-"""Measures the peers and writes docs/performance_peers.md, whose tables `make pictures` draws.
+"""Measures contact-normal and other solvers, and writes docs/performance_peers.md, whose tables `make pictures` draws.
 
 `make bench-peers`, or `python run.py [--quick | --slow] [--report]`. --quick: up to 512; --slow: tamaas and ContactMechanics at 1024
 too (an hour more); --report: only writes again what build/peers_*.json hold.
@@ -19,12 +19,11 @@ OURS = "contact-normal"
 ALL = [OURS, "aspher", "tamaas", "ContactMechanics"]
 FAST = [OURS, "aspher"]
 ORDER = ["ellipse", "sphere", "rough"]
-# At least so many times faster.
 PEERS = ("aspher", "tamaas", "ContactMechanics")
 
 
 def jobs(arguments):
-    """(problem, size, solvers)."""
+    """Yields the problems that are measured: (problem, size, solvers)."""
     yield from [(kind, size, ALL) for size in (256, 512) for kind in ("sphere", "rough", "ellipse")]
     if "--quick" in arguments:
         return
@@ -33,7 +32,7 @@ def jobs(arguments):
 
 
 def machine():
-    """What kind of machine, and what was measured on it."""
+    """The machine, and the versions of the packages, as text."""
     with open("/proc/cpuinfo", encoding="utf-8") as file:
         lines = [line.split(":")[1].strip() for line in file if line.startswith("model name")]
     names = ["aspher", "tamaas", "ContactMechanics", "numpy", "scipy"]
@@ -42,12 +41,12 @@ def machine():
 
 
 def processor(result):
-    """Median of the seconds of the processor."""
+    """The median of the processor times of a result."""
     return median(time for time, _ in result["times"])
 
 
 def ratio_of_clocks(result, ours):
-    """How many times slower by the clock; nothing when it was measured once only."""
+    """The ratio of the median wall-clock times of a result and of ours, as text; "" if the result was measured only once."""
     clocks = [clock for _, clock in result["times"] if clock is not None]
     if not clocks:
         return ""
@@ -55,7 +54,7 @@ def ratio_of_clocks(result, ours):
 
 
 def shown(seconds):
-    """Three figures."""
+    """A time with three figures, as text."""
     return f"{seconds * 1e3:.3g} ms" if seconds < 1 else f"{seconds:.3g} s"
 
 
@@ -90,7 +89,7 @@ def table(measured):
 
 
 def report():
-    """The table."""
+    """Writes the page, and prints it."""
     measured = []
     for path in glob.glob(os.path.join(ROOT, "build", "peers_*.json")):
         with open(path, encoding="utf-8") as file:
@@ -106,7 +105,7 @@ def report():
         f"{table(measured)}\n\n![Time over the size, of each solver, for two accuracies](pictures/performance_peers.svg)\n"
     )
     path = os.path.join(ROOT, "docs", "performance_peers.md")
-    # friction.py writes what follows its heading.
+    # The section on friction, which friction.py writes, is kept.
     friction = ""
     if os.path.exists(path):
         with open(path, encoding="utf-8") as file:

@@ -1,5 +1,5 @@
-"""The calls of each solver, each in its best settings. `call(problem, tolerance)` returns the pressures (my, mx); whatever it does
-counts, set-up included. None: the solver cannot do that problem."""
+"""The calls of each solver in its best settings. `call(problem, tolerance)` returns the pressures (my, mx), or None if the solver cannot solve the
+problem. The time of the whole call counts, set-up included."""
 
 import contextlib
 import io
@@ -15,7 +15,7 @@ DECADES = [10.0**-k for k in range(2, 10)]
 
 
 def ours(problem, tolerance, threads=1):
-    """contact-normal, method AUTO."""
+    """Solves by contact-normal, method AUTO."""
     import contact_normal
 
     return contact_normal.solve(
@@ -31,7 +31,7 @@ def ours(problem, tolerance, threads=1):
 
 
 def aspher(problem, tolerance, **settings):
-    """Square grids and elements, N = 64 * 2^k."""
+    """Solves by aspher, which takes square grids of square elements only, N = 64 * 2^k."""
     import aspher as peer
 
     if not problem.square:
@@ -50,7 +50,7 @@ def aspher(problem, tolerance, **settings):
 
 
 def tamaas(problem, tolerance):
-    """Polonsky and Keer; the free half-space is its operator dcfft."""
+    """Solves by tamaas' method of Polonsky and Keer. Its operator dcfft is that of a half-space without periods."""
     import tamaas as peer
 
     peer.set_log_level(peer.LogLevel.error)
@@ -69,7 +69,7 @@ def _contact_mechanics(problem):
     from ContactMechanics.Systems import NonSmoothContactSystem
     from SurfaceTopography import Topography
 
-    # Its first direction is x; h is handed over transposed so that both agree.
+    # The first index of ContactMechanics is x, so h is transposed.
     h = np.ascontiguousarray(-problem.h.T)
     sides = problem.sides[::-1]
     return NonSmoothContactSystem(
@@ -78,12 +78,12 @@ def _contact_mechanics(problem):
 
 
 def _length(problem):
-    """Its tolerances are absolute: the penetration or height they are taken of."""
+    """The length by which tolerances are multiplied, because those of ContactMechanics are absolute: a typical penetration or height."""
     return 0.01 if problem.modulus == 1.0 else 0.1
 
 
 def contact_mechanics(problem, tolerance):
-    """Polonsky and Keer."""
+    """Solves by ContactMechanics' method of Polonsky and Keer."""
     system = _contact_mechanics(problem)
     result = system.minimize_proxy(
         maxiter=20000,
@@ -96,12 +96,12 @@ def contact_mechanics(problem, tolerance):
 
 
 def contact_mechanics_dual(problem, tolerance):
-    """Conjugate gradients of Bugnicourt et al. in the pressures."""
+    """Solves by ContactMechanics' conjugate gradients of Bugnicourt et al., with the pressures as unknowns."""
     from NuMPI.Optimization import CCGWithoutRestart
 
     system = _contact_mechanics(problem)
     mean = problem.force / problem.h.size
-    with contextlib.redirect_stdout(io.StringIO()):  # it prints advice
+    with contextlib.redirect_stdout(io.StringIO()):  # ContactMechanics prints advice here.
         result = CCGWithoutRestart.constrained_conjugate_gradients(
             system.dual_objective(0.0, gradient=True),
             system.dual_hessian_product,
@@ -113,7 +113,7 @@ def contact_mechanics_dual(problem, tolerance):
     return np.array(result.x).reshape(problem.h.T.shape).T / (problem.dx * problem.dy)
 
 
-# name, setting -> call, tolerances from loose to tight
+# For each solver its calls by the name of their setting, and the tolerances from loose to tight.
 SOLVERS = {
     "contact-normal": ({"AUTO": ours}, HALF_DECADES),
     "aspher": (

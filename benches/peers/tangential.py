@@ -1,14 +1,14 @@
-"""A shift from rest, and a check of any tractions that depends on no solver.
+"""A shift with friction from rest, and a check of tractions that is independent of all solvers.
 
     s = w + A q;  stick: s = 0, |q| <= g = mu p;  slip: |q| = g, s opposite to q;  elsewhere: q = 0
 
-w is minus the shift, and A holds the displacements of two like half-spaces by a uniform traction on an element (Kalker 1990),
+The rigid slip w is minus the shift. A holds the displacements of two equal half-spaces by a uniform traction on an element (Kalker 1990),
 
     Axx = ((1 - nu) a + b)/(pi G),  Ayy = (a + (1 - nu) b)/(pi G),  Axy = nu c/(pi G),
     a = [X asinh(Y/|X|)],  b = [Y asinh(X/|Y|)],  c = -[r]  ([ ]: differences of the four corners),
 
-applied here by scipy's FFT. Arrays are (my, mx), tractions (2, my, mx). The corner of a takes asinh(Y/|X|) for ln(Y + r): the difference,
-X ln |X|, does not depend on Y and drops out.
+and is applied here by scipy's FFT. Arrays are (my, mx), tractions (2, my, mx). In a, asinh(Y/|X|) takes the place of ln(Y + r): the difference,
+X ln |X|, does not depend on Y and cancels in the sum over the corners.
 """
 
 import numpy as np
@@ -16,29 +16,33 @@ import scipy.fft
 
 
 class Shift:
-    """The normal problem, two like bodies with E* of the normal problem, and a tangential force along x, or a shift (a pair)."""
+    """The tangential problem of two bodies with equal elastic constants and the E* of the normal problem.
+
+    A tangential force along x is given, or a shift (a pair).
+    """
 
     def __init__(self, normal, poisson_ratio, friction, force):
         self.normal, self.poisson_ratio, self.mu = normal, poisson_ratio, friction
         self.force, self.shift = force, None
-        # E* = G/(1 - nu) for two like bodies.
+        # E* = G/(1 - nu) for two bodies with equal constants.
         self.shear_modulus = normal.modulus * (1.0 - poisson_ratio)
         my, mx = normal.h.shape
         tables = coefficients(my, mx, normal.dy, normal.dx, poisson_ratio) / self.shear_modulus
         self._spectra = [scipy.fft.rfft2(circulant(table, odd)).real.copy() for table, odd in zip(tables, (False, False, True))]
 
     def displacement(self, q):
-        """u = A q, both components."""
+        """Computes u = A q, with both components."""
         my, mx = q.shape[1:]
         x, y = scipy.fft.rfft2(q, s=(2 * my, 2 * mx))
         xx, yy, xy = self._spectra
         return scipy.fft.irfft2(np.stack([xx * x + xy * y, xy * x + yy * y]), s=(2 * my, 2 * mx))[:, :my, :mx]
 
     def error(self, p, q, moved):
-        """Residual of the tangent cone, or what q leaves of its disc, of the area, or of the given force, if that is more.
+        """The error of tractions q: the largest of several numbers.
 
-        rms over the contact area, relative to the larger one of the rms of w and u. Where the force is given, w is the
-        shift that the solver reports (`moved`) or what suits the sticking elements best, whichever leaves less.
+        These are the `residual` of the slip conditions; the largest |q| beyond the traction bound, or outside the contact, over the largest bound;
+        and, where the force is given, its error over the sum of the bounds. Where the force is given, w is minus the shift that the solver reports
+        (`moved`), or the w that fits the sticking elements best, whichever has the smaller residual.
         """
         g = self.mu * np.maximum(p, 0.0)
         contact, size = g > 0, np.hypot(*q)
@@ -60,7 +64,10 @@ class Shift:
 
 
 def residual(q, u, circle, w):
-    """rms of s inside the circle, and on it of what is left of s without its part opposite to q."""
+    """The rms over the contact area of the part of the slip s that violates the conditions of friction, over the larger one of the rms of w and u.
+
+    Where an element sticks this is all of s. Where an element is on the bound (`circle`) it is s without its part opposite to q.
+    """
     s = w[:, None] + u
     n = q / np.maximum(np.hypot(*q), np.finfo(float).tiny)
     opposite = np.minimum((s * n).sum(axis=0), 0.0)
@@ -70,7 +77,7 @@ def residual(q, u, circle, w):
 
 
 def coefficients(my, mx, dy, dx, nu):
-    """Axx, Ayy, Axy times G at offsets 0..my-1 by 0..mx-1."""
+    """The coefficients Axx, Ayy and Axy, times G, at the offsets 0..my-1 by 0..mx-1."""
     y, x = (((np.arange(m + 1) - 0.5) * d) for m, d in ((my, dy), (mx, dx)))
     y, x = y[:, None], x[None, :]
     corners = lambda f: f[1:, 1:] - f[:-1, 1:] - f[1:, :-1] + f[:-1, :-1]  # noqa: E731
@@ -79,7 +86,7 @@ def coefficients(my, mx, dy, dx, nu):
 
 
 def circulant(table, odd):
-    """All offsets of a table that is even in both directions, or odd in both; 0 at the offset of half a period."""
+    """The table at all offsets of a period, from one that is even in both directions, or odd in both; 0 at the offset of half a period."""
     my, mx = table.shape
     sign = -1.0 if odd else 1.0
     if odd:

@@ -1,10 +1,11 @@
-"""A layer on a rigid base beside ContactMechanics: `build/peers/bin/python benches/peers/thickness.py`, after `make bench-peers` or with the packages
-of `requirements.txt`.
+"""Compares an elastic layer on a rigid base with ContactMechanics: `build/peers/bin/python benches/peers/thickness.py`, after `make bench-peers` or
+with the packages of `requirements.txt`.
 
-A ball is pressed on a cell that repeats itself, by a force. ContactMechanics has an elastic half-space of finite thickness; contact-normal has a coating on
-a body of infinite modulus. Compares the largest pressure, the contact area and the approach on finer and finer grids. ContactMechanics
-multiplies waves at its nodes, contact-normal has pressures that are constant on elements: both tend to the same answer. The columns are relative
-differences, which fall to a quarter where elements are halved. One element at the edge is 1e-2 to 1e-4 of the contact area.
+A ball is pressed by a force onto a periodic layer. ContactMechanics has an elastic half-space of finite thickness; contact-normal has a coating on
+a rigid body. The bench compares the largest pressure, the contact area and the approach on finer and finer grids. ContactMechanics computes with
+Fourier coefficients of values at nodes, and the pressures of contact-normal are constant on elements, so that both tend to the same solution. The
+columns are relative differences, which fall to a quarter where elements are halved. One element at the edge of the contact is 1e-2 to 1e-4 of its
+area.
 """
 
 import os
@@ -28,20 +29,23 @@ TOLERANCE = 1e-7
 
 
 def base(n, thickness, ratio):
-    """Its half-space of finite thickness: it takes E, not E*. Of an incompressible one it divides by 0 for the mean, which is not compressed;
-    nearer to 1/2 than this its solver comes to no end. What is left changes answers by some 1e-6."""
+    """ContactMechanics' half-space of finite thickness, which takes E instead of E*.
+
+    For an incompressible layer it would divide by 0 in the mean compliance, and for Poisson ratios nearer to 1/2 than this one its solver does not
+    end. The difference from 1/2 changes results by some 1e-6.
+    """
     young = MODULUS * (1 - ratio**2)
     return PeriodicFFTElasticHalfSpace((n, n), young, (SIDE, SIDE), thickness=thickness, poisson=min(ratio, 0.5 - 1e-6))
 
 
 def layer(thickness, ratio):
-    """The same for contact-normal: a rigid counterbody, a coating on a rigid base."""
+    """The same bodies for contact-normal: a coating on a rigid base, and a rigid ball."""
     shear = 0.5 * MODULUS * (1 - ratio)
     return {"shear_modulus": (np.inf, np.inf), "poisson_ratio": (0.3, 0.3), "coating": ((thickness, shear, ratio), None)}
 
 
 def solve(n, thickness, ratio, force):
-    """Largest pressure, contact area and approach: theirs, ours."""
+    """The largest pressure, the contact area and the approach by ContactMechanics, and by contact-normal."""
     x = (np.arange(n) + 0.5) / n - 0.5
     h = x[None, :] ** 2 + x[:, None] ** 2
     system = NonSmoothContactSystem(base(n, thickness, ratio), Topography(-h, physical_sizes=(SIDE, SIDE), periodic=True))
@@ -57,12 +61,13 @@ def solve(n, thickness, ratio, force):
     )
 
 
-# Of the largest pressure and of the approach on 256 x 256 elements, and that of 64 x 64 over that.
+# The limit of the differences of the largest pressure and of the approach on 256 x 256 elements, and the least factor by which they must be smaller there
+# than on 64 x 64.
 AGREE, FALLS = 2e-4, 4.0
 
 
 def main():
-    """The table; ends with an error where an answer is not theirs."""
+    """Prints the table. Ends with an error if the programs disagree."""
     print("| Poisson ratio | thickness | elements | largest pressure | contact area | approach |")
     print("|---|---|---|---|---|---|")
     wrong = []

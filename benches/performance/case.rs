@@ -5,18 +5,18 @@ use std::f64::consts::TAU;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{refine, Bodies, Load, Scene};
 
-/// One problem, with both ways to load it.
+/// A problem that is measured.
 pub struct Case {
     pub name: String,
     pub grid: Grid,
     pub bodies: Bodies,
     pub h: Vec<f64>,
-    /// The load that the targets speak of.
+    /// The load for which the targets are stated.
     pub load: Load,
 }
 
 impl Case {
-    /// The scene with its own load.
+    /// The scene with the load of the case.
     pub fn scene(&self) -> Scene<'_> {
         self.scene_with(self.load)
     }
@@ -54,7 +54,7 @@ pub fn rough(m: usize) -> Case {
     }
 }
 
-/// `z = 2 Re sum of c exp(2 pi i (kx x + ky y))` at x, y = 0, 1/m, ...
+/// The heights `z = 2 Re sum of c exp(2 pi i (kx x + ky y))` at x, y = 0, 1/m, ..., with the coefficients c of the data file.
 fn heights(m: usize) -> Vec<f64> {
     let text = read("data/rough/self_affine.txt");
     let lines: Vec<Vec<f64>> = text.lines().filter(|line| !line.starts_with('#')).map(numbers).collect();
@@ -80,7 +80,7 @@ fn heights(m: usize) -> Vec<f64> {
     z
 }
 
-/// A wheel-rail contact of `data/wheel_rail`, its elements divided into `refinement` x `refinement`, approach prescribed.
+/// A wheel-rail contact of `data/wheel_rail` with a prescribed approach. Each element is divided into `refinement` x `refinement` elements.
 pub fn wheel_rail(name: &str, refinement: usize) -> Case {
     let text = read(&format!("data/wheel_rail/{name}.txt"));
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
@@ -100,7 +100,7 @@ pub fn wheel_rail(name: &str, refinement: usize) -> Case {
     }
 }
 
-/// "ellipse", "rough", or the name of a wheel-rail contact and its refinement.
+/// A case by its name: "ellipse" or "rough" on m x m elements, or the name of a wheel-rail contact with the refinement m.
 pub fn by_name(name: &str, m: usize) -> Case {
     match name {
         "ellipse" => ellipse(m),

@@ -1,4 +1,4 @@
-//! Whether a dense direct solve of the equations on C would be faster on few elements.
+//! Measures whether a dense direct solve of the equations on the contact area C would be faster on grids of few elements.
 
 use contact_normal::operator::dense;
 use contact_normal::solver::{Options, Solver};
@@ -8,7 +8,7 @@ use faer::{Mat, MatRef, Side};
 use crate::case::ellipse;
 use crate::measure::{cold, in_turns, median, shown};
 
-/// One solve by Cholesky's method of the equations on the contact area, against AUTO's whole solve, which finds that area too.
+/// Compares one Cholesky solve of the equations on the contact area, which is known, with a whole solve by AUTO, which also finds this area.
 pub fn direct() {
     println!("\n### One dense solve on the contact area against the whole of AUTO's, one thread\n");
     println!("| case | in contact | Cholesky, solve | AUTO, on a solver set up | AUTO, cold | AUTO, set up / one dense solve |");

@@ -1,4 +1,4 @@
-//! A shift with friction: the tangential problem beside the normal one, and by two threads beside one.
+//! Times of a shift with friction: compared with the normal problem alone, and with one and several threads.
 
 use std::time::Instant;
 
@@ -12,7 +12,7 @@ use super::measure::{cold, in_turns, median, shown};
 const MU: f64 = 0.3;
 const TOLERANCE: f64 = 1e-4;
 
-/// Whole cold calls, a shift to half of mu N: of `threads` threads and of one, in turns.
+/// Measures whole cold calls of a shift to half of mu N, with `threads` threads and with one, in turns.
 pub fn shifts(threads: usize, sizes: &[usize]) {
     println!(
         "\n## A shift to half of mu N, tolerance {TOLERANCE:.0e}, whole cold calls, 1 and {threads} threads in turns"
@@ -27,7 +27,7 @@ pub fn shifts(threads: usize, sizes: &[usize]) {
     }
 }
 
-/// Cold shifts by so many threads, for so many seconds, for a profiler.
+/// Repeats cold solves of a shift with `threads` threads for `time` seconds, for a profiler.
 pub fn shift_again(case: &Case, threads: usize, time: f64) {
     let (shifted, began) = (shifted(case), Instant::now());
     while began.elapsed().as_secs_f64() < time {
@@ -39,7 +39,7 @@ fn options(threads: usize) -> Options {
     Options { tolerance: TOLERANCE, threads, ..Options::default() }
 }
 
-/// The shift that half of mu N asks for.
+/// The scene of a case with the shift at which the tangential force is half of mu N.
 fn shifted(case: &Case) -> Scene<'_> {
     let plain = case.scene();
     let (_, _, normal) = solve(&plain, &options(1)).expect("a solution");
@@ -51,7 +51,8 @@ fn shifted(case: &Case) -> Scene<'_> {
     with(Friction { prescribed: creepage.map(Prescribed::Creepage), ..Friction::new(MU) })
 }
 
-/// The rough surface, with like bodies of the same E*: otherwise both problems are solved in turns.
+/// The rough surface on bodies with equal elastic constants and the same E*. With different constants the normal and the tangential problem
+/// would be solved in turns.
 pub fn like_bodies(m: usize) -> Case {
     Case { bodies: Bodies::same(0.7, 0.3), ..rough(m) }
 }
@@ -72,7 +73,8 @@ fn row(case: &Case, threads: usize) {
     println!("| {} | {products:.1} | {columns} | {ratio:.2} |", case.name);
 }
 
-/// Calls for pressures that are given, on small grids: a single call and one of a handle, in turns; a shift to a residual of 1e-6.
+/// Measures the tangential problem of given pressures on small grids, a shift to a residual of 1e-6: single calls and calls of a solver handle,
+/// in turns.
 pub fn given_pressures() {
     println!("\n## The tangential problem of given pressures, a shift, 1e-6, one thread: single calls and those of a handle, in turns");
     println!("| elements | products | single | handle | times faster |");

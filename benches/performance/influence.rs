@@ -1,4 +1,5 @@
-//! What another table of coefficients costs on a handle (CONTACT's step): the call itself, and with what the next solve computes of it.
+//! Costs of replacing the table of influence coefficients of a solver handle, as CONTACT does in each step: the call itself, and together with
+//! what the next solve computes from the table.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{RowTables, Table};
@@ -9,10 +10,10 @@ use crate::case::{ellipse, Case};
 use crate::measure::{in_turns, median, shown, Product};
 use crate::summary;
 
-/// What it may cost in products.
+/// The limit of this cost, in products.
 const AT_MOST: f64 = 2.5;
 
-/// The table.
+/// Prints the costs of another table, for an even table and one that is not even.
 pub fn another_table(sizes: &[usize]) {
     println!("\n### Another table of coefficients on a handle, in products\n");
     println!("| case | table | product | set_influence | and what the next solve computes of it | at most | |");
@@ -24,7 +25,7 @@ pub fn another_table(sizes: &[usize]) {
     }
 }
 
-/// The half-space's coefficients, in which offsets `(kx, .)` and `(-kx, .)` differ by a part `skew`.
+/// The coefficients of the half-space times `1 + skew sign(kx)`: without a skew they are even in x.
 fn table(case: &Case, skew: f64) -> Vec<f64> {
     let (mx, my) = (case.grid.mx as i64, case.grid.my as i64);
     let half_space = case.scene().coefficients().expect("coefficients");
@@ -64,12 +65,15 @@ fn row(case: &Case, name: &str, skew: f64) {
     );
 }
 
-/// Columns and rows of the groove, and what a call may take.
+/// Columns of elements of the groove.
 const COLUMNS: usize = 60;
+/// Rows of elements of the groove.
 const ROWS: usize = 100;
+/// The limit of the time of a call, in seconds.
 const GROOVE: f64 = 5e-3;
 
-/// A call with a table for each loaded row, from the solution: the tables are copied, checked and transformed.
+/// Measures a call with a table for each loaded row that starts from the solution. Its time is that of copying, checking and transforming the
+/// tables.
 pub fn row_tables() {
     let grid = Grid::new(COLUMNS, ROWS, 0.2, 0.1).expect("a grid");
     let half_space =
@@ -77,7 +81,7 @@ pub fn row_tables() {
     let (rows, columns) = (ROWS as i64, COLUMNS as i64);
     let pairs = (0..rows).flat_map(|jy| (0..rows).map(move |iy| (jy, iy)));
     let offsets = pairs.flat_map(|(jy, iy)| (-columns..columns).map(move |kx| (jy, iy, kx)));
-    // The body is a little more compliant to one side.
+    // The compliance of the body grows a little from row to row.
     let values: Vec<f64> = offsets
         .map(|(jy, iy, kx)| (1.0 + 1e-3 * (jy + iy) as f64 / rows as f64) * half_space.at(kx, iy - jy))
         .collect();

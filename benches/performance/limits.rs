@@ -1,9 +1,9 @@
-//! What a product moves and computes, beside what the machine can.
+//! The bytes that a product moves and the operations that it takes per second, compared with the speed at which the machine copies memory.
 //!
-//! A product on N = m x m elements of even coefficients, padded to 2m x 2m, moves 88 bytes an element when no array stays in the caches:
-//! p and u (8 each), the transformed rows (written, read and written by the columns, read: 64), the spectrum (8). Its transforms are 2 m
-//! real ones of 2m values and 2 (m + 1) complex ones; `5 L log2 L` operations for a complex one of length L, half of that for a real one,
-//! are `30 N log2(2m)` in all.
+//! Consider a product on N = m x m elements with even coefficients, padded to 2m x 2m. If no array stays in the caches, it moves 88 bytes per
+//! element: 8 for p, 8 for u, 64 for the transformed rows (written, read and written by the columns, read) and 8 for the spectrum. It takes 2 m
+//! real transforms of 2m values and 2 (m + 1) complex ones. A complex transform of length L takes `5 L log2 L` operations, a real one half of
+//! that; together these are `30 N log2(2m)`.
 
 use std::hint::black_box;
 
@@ -12,10 +12,10 @@ use crate::measure::{in_turns, median, shown, Product};
 
 /// Bytes that a product moves for each element.
 const BYTES: f64 = 88.0;
-/// Values of an array that no cache holds.
+/// The number of values of an array that is larger than any cache.
 const LARGE: usize = 1 << 25;
 
-/// The table.
+/// Prints the rates of products, and of copying.
 pub fn limits(threads: usize, sizes: &[usize]) {
     println!("\n### What a product moves and computes, {threads} thread(s)\n");
     println!("| case | product | GB/s | Gflop/s |");

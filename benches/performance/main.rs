@@ -1,11 +1,17 @@
-//! What a solve costs: `cargo bench` or `make bench`.
+//! Measures what a solve costs, and compares it with targets: `cargo bench` or `make bench`.
 //!
-//! Every time is a median of repeats that were taken in turns with what it is compared with; times of whole calls include the set-up.
+//! Every time is a median of repeats. The calls that are compared are repeated in turns. Times of whole calls include the set-up.
 //!
-//! `cargo bench -- --large`: with 4096 x 4096 elements (2 GB), memory with 8192 x 8192 (5 GB); `-- --huge`: and 16384 x 16384 (20 GB). `-- --quick`: up to 512. `-- --threads N`: the tables of the targets with
-//! one and N threads (2; 1: one only). `-- --processor`: times with one thread are the processor's, for machines that are not quiet.
-//! Further arguments name the tables: cold steps limits versus speedup one influence force accuracy growth norm
-//! memory batch dense methods friction. The last table has all targets of which something was run.
+//! Options of `cargo bench -- OPTIONS`:
+//!
+//! - `--quick`: grids of up to 512 x 512 elements.
+//! - `--large`: also 4096 x 4096 elements (2 GB), and memory on 8192 x 8192 (5 GB); `--huge`: also memory on 16384 x 16384 (20 GB).
+//! - `--threads N`: the tables of the targets with one and N threads; default 2, and 1: one thread only.
+//! - `--processor`: times with one thread are processor times, for machines that other programs use too.
+//! - Names of tables, of which only these are then run: cold steps limits versus speedup one influence force accuracy growth norm memory batch
+//!   dense methods friction.
+//!
+//! The last table has all targets, with the results of this run.
 
 mod case;
 mod dense;
@@ -19,14 +25,15 @@ mod summary;
 mod targets;
 mod versus;
 
-/// Bytes per element: 4.5 GB of 8192 x 8192 elements, 20 GB of 16384 x 16384.
+/// The limit of memory in bytes per element: 4.5 GB on 8192 x 8192 elements.
 const LARGEST_ELLIPSE: f64 = 4.5e9 / (8192.0 * 8192.0);
+/// The limit of memory in bytes per element: 20 GB on 16384 x 16384 elements.
 const LARGEST_ROUGH: f64 = 20e9 / (16384.0 * 16384.0);
 
 fn main() {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
     if arguments.is_empty() {
-        // `cargo test --all-targets` runs benches too, without --bench: a sign of life will do.
+        // `cargo test --all-targets` runs benches too, without --bench. One small case shows that this bench works.
         return targets::cold_row(&case::ellipse(16), 1, |product| 25.0 * product + 50e-6, 25.0);
     }
     arguments.retain(|argument| argument != "--bench");

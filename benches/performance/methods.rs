@@ -1,4 +1,4 @@
-//! All methods over sizes and threads.
+//! Compares all methods on several grids, with one and two threads.
 
 use contact_normal::solver::{Method, Options, Outcome};
 
@@ -13,7 +13,7 @@ const METHODS: [(&str, Method); 5] = [
     ("NORM", Method::Norm),
 ];
 
-/// Work in products on the finest grid and time of each method.
+/// Prints the work of each method, in products on the finest grid, and its time with one and two threads.
 pub fn methods(sizes: &[usize]) {
     println!("\n### Methods, cold, tolerance 1e-6: work in products / time with one thread / with two\n");
     println!("| case | {} |", METHODS.map(|(name, _)| name).join(" | "));

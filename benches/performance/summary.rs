@@ -1,19 +1,19 @@
-//! All targets in one table, at the end of a run: what was measured for each of them, from the best case to the worst.
+//! The table of all targets at the end of a run: for each target the best and the worst measured case.
 
 use std::sync::Mutex;
 
-/// One target.
+/// A target for the cost, or the speed, of some work.
 struct Target {
     work: &'static str,
-    /// At commit 9fd3772.
+    /// The value at commit 9fd3772.
     before: &'static str,
     wanted: f64,
-    /// Whether more is better.
+    /// Whether `wanted` is a lower limit.
     at_least: bool,
     unit: &'static str,
 }
 
-/// Names of targets, for those who measure.
+// The names of the targets, by which `note` records measurements.
 pub const ELLIPSE: &str = "ellipse 256 .. 2048, one thread";
 pub const ROUGH: &str = "rough surface 256 .. 2048, one thread";
 pub const ELLIPSE_OLD: &str = "ellipse, in products of 9fd3772";
@@ -60,18 +60,19 @@ const TARGETS: [Target; 19] = [
     target(GROWTH, "1.12", 1.08, false, "exponent"),
 ];
 
-/// Time steps of so many products, in so many of the cases.
-const STEP: (f64, usize) = (5.0, 5);
+/// The target of time steps also demands that a step takes at most this number of products in at least [`CASES_OF_SHORT_STEPS`] cases.
+const SHORT_STEP: f64 = 5.0;
+const CASES_OF_SHORT_STEPS: usize = 5;
 
 static MEASURED: Mutex<Vec<(&str, f64)>> = Mutex::new(Vec::new());
 
-/// A measurement of one of the targets, in its unit.
+/// Records a measurement of one of the targets, in its unit.
 pub fn note(work: &'static str, value: f64) {
     assert!(TARGETS.iter().any(|target| target.work == work), "{work} is no target");
     MEASURED.lock().expect("the measurements").push((work, value));
 }
 
-/// A time in products of this library and of 9fd3772, where they are known.
+/// Records a time in products of this library, and in products of 9fd3772, where the time of these products is known.
 pub fn note_products(works: [&'static str; 2], time: f64, products: [Option<f64>; 2]) {
     for (work, product) in works.into_iter().zip(products) {
         if let Some(product) = product {
@@ -100,9 +101,9 @@ pub fn print() {
         let mut now = if values.len() == 1 { shown(*worst) } else { format!("{} .. {}", shown(*best), shown(*worst)) };
         let mut met = if *at_least { worst >= wanted } else { worst <= wanted };
         if [STEPS, STEPS_OLD].contains(work) {
-            let few = values.iter().filter(|value| **value <= STEP.0).count();
-            now += &format!("; at most {} in {few} of {} cases", STEP.0, values.len());
-            met &= few >= STEP.1;
+            let few = values.iter().filter(|value| **value <= SHORT_STEP).count();
+            now += &format!("; at most {SHORT_STEP} in {few} of {} cases", values.len());
+            met &= few >= CASES_OF_SHORT_STEPS;
         }
         let sign = if *at_least { "at least" } else { "at most" };
         println!("| {work} | {before} | {now} | {sign} {wanted} {unit} | {} |", if met { "met" } else { "MISSED" });

@@ -1,4 +1,4 @@
-//! The table of targets: what a solve costs in products, beside what it may cost.
+//! The tables of targets: what a solve costs in products A p, compared with the limit of this cost.
 
 use std::process::Command;
 
@@ -11,7 +11,7 @@ use crate::case::{by_name, ellipse, rough, wheel_rail, Case};
 use crate::measure::{by_processor, cold, in_turns, median, seconds, shown, size, Product};
 use crate::{old, summary};
 
-/// What the small grids may cost on top of their products.
+/// The time in seconds that a solve on a small grid may take in addition to its products.
 const SMALL_GRID_EXTRA: f64 = 50e-6;
 
 fn mark(measured: f64, at_most: f64) -> &'static str {
@@ -26,7 +26,7 @@ fn options(threads: usize) -> Options {
     Options { threads, ..Options::default() }
 }
 
-/// Cold calls against products.
+/// Prints the times of cold calls, and their ratio to the time of a product.
 pub fn cold_calls(threads: usize, sizes: &[usize]) {
     println!("\n### Cold calls, {threads} thread(s)\n");
     println!("| case | elements | in contact | call | product | products | of 9fd3772 | of them counted | at most | |");
@@ -44,7 +44,7 @@ pub fn cold_calls(threads: usize, sizes: &[usize]) {
     println!("\n16, 32, 64: the limit is 25 products and 50 microseconds.");
 }
 
-/// One case: its call against products.
+/// Prints the row of one case in the table of cold calls. `limit` computes the largest allowed time of the call from the time of a product.
 pub fn cold_row(case: &Case, threads: usize, limit: impl Fn(f64) -> f64, at_most: f64) {
     let (scene, options) = (case.scene(), options(threads));
     let mut product = Product::new(&scene, threads);
@@ -79,10 +79,10 @@ pub fn cold_row(case: &Case, threads: usize, limit: impl Fn(f64) -> f64, at_most
     );
 }
 
-/// Steps of 1 % of the approach, `CLIMB` of them up, then down again, and so on.
+/// The number of time steps, of 1 % of the approach each, that increase the approach before as many decrease it again.
 const CLIMB: i32 = 20;
 
-/// The next solve after the approach changed by 1 %.
+/// Measures time steps: the next solve of a handle after the approach changed by 1 %.
 pub fn time_steps(threads: usize) {
     println!(
         "\n### Time stepping: the approach changes by 1 % a step, {CLIMB} steps up, {CLIMB} down; {threads} thread(s)\n"
@@ -138,7 +138,7 @@ pub fn time_steps(threads: usize) {
     }
 }
 
-/// Two threads against one, cold calls in turns; and one element with a table of its own.
+/// Compares cold calls with several threads and with one.
 pub fn speed_up(threads: usize, sizes: &[usize]) {
     println!("\n### {threads} threads against one, cold\n");
     println!("| case | one thread | {threads} threads | ratio | at least | |");
@@ -153,7 +153,7 @@ pub fn speed_up(threads: usize, sizes: &[usize]) {
     }
 }
 
-/// The same for single products, of which a call makes some on each of its grids.
+/// Compares single products with several threads and with one. A call makes some products on each of its grids.
 pub fn speed_up_of_products(threads: usize, sizes: &[usize]) {
     println!("\n### {threads} threads against one, a product alone\n");
     println!("| elements | one thread | {threads} threads | ratio |");
@@ -167,7 +167,7 @@ pub fn speed_up_of_products(threads: usize, sizes: &[usize]) {
     }
 }
 
-/// A cold call of one element with a table of its own.
+/// Measures a cold call of one element with a table of influence coefficients.
 pub fn one_element() {
     let grid = Grid::new(1, 1, 1.0, 1.0).expect("a grid");
     let table = || Table::new(1, 1, &[1.0; 4], &grid).expect("a table");
@@ -181,7 +181,7 @@ pub fn one_element() {
     println!("\n### One element with a table of its own, cold\n\n{took:.2} us, at most 4: {}.", mark(took, 4.0));
 }
 
-/// Prescribed force against the approach that it leads to.
+/// Compares solves with a prescribed force and with the approach that this force leads to.
 pub fn force_against_approach(threads: usize) {
     println!("\n### Prescribed force against prescribed approach, cold, {threads} thread(s)\n");
     println!("| case | approach | force | ratio | at most | |");
@@ -205,7 +205,7 @@ pub fn force_against_approach(threads: usize) {
     }
 }
 
-/// What estimating errors costs, and what stopping at a part of the discretisation error saves.
+/// Measures what the estimates of errors cost, and what is saved if a solve stops at a part of the discretisation error.
 pub fn accuracy(threads: usize) {
     println!("\n### What estimates cost, cold, {threads} thread(s)\n");
     println!("| case | without | with estimates | more | at most | |");
@@ -241,7 +241,7 @@ pub fn accuracy(threads: usize) {
     }
 }
 
-/// How the time grows with the number of elements.
+/// Measures how the time of a solve grows with the number of elements N, as the exponent of N.
 pub fn growth(threads: usize, sizes: &[usize]) {
     println!("\n### Growth of the time on the rough surface, {threads} thread(s)\n");
     println!("| size | call | exponent from the size before | from the first | at most | |");
@@ -264,19 +264,19 @@ pub fn growth(threads: usize, sizes: &[usize]) {
         }
         calls.push((m, call));
     }
-    if let [first, .., last] = &calls[..] {
-        let exponent = (last.1 / first.1).ln() / (2.0 * (last.0 as f64 / first.0 as f64).ln());
+    if let [(first_size, first_call), .., (last_size, last_call)] = &calls[..] {
+        let exponent = (last_call / first_call).ln() / (2.0 * (*last_size as f64 / *first_size as f64).ln());
         summary::note(summary::GROWTH, exponent);
     }
 }
 
-/// Many small problems in one call: how much faster two workers are than one.
+/// Measures a batch of small problems with one worker and with two.
 pub fn batch() {
     const COUNT: usize = 1000;
     println!("\n### Batch of {COUNT} problems of 64 x 64 elements: two workers against one, by the clock\n");
     println!("| one worker | problems per second | two workers | problems per second | ratio | at least | |");
     println!("|---|---|---|---|---|---|---|");
-    // Bodies of other curvatures, pressed together by other amounts.
+    // The problems have bodies of different curvatures, pressed together by different approaches.
     let case = ellipse(64);
     let scaled = |k: usize| case.h.iter().map(|h| (0.8 + 0.4 * k as f64 / COUNT as f64) * h).collect();
     let surfaces: Vec<Vec<f64>> = (0..COUNT).map(scaled).collect();
@@ -304,7 +304,7 @@ pub fn batch() {
     );
 }
 
-/// NORM against AUTO.
+/// Compares the methods NORM and AUTO.
 pub fn norm_against_auto(threads: usize) {
     println!("\n### NORM (by FFT) against AUTO at 512, {threads} thread(s)\n");
     println!("| case | NORM | AUTO | ratio | at least | |");
@@ -325,11 +325,11 @@ pub fn norm_against_auto(threads: usize) {
     }
 }
 
-/// The argument that makes a process do nothing but [`solve_once`].
+/// The first argument of a process of this program that only calls [`solve_once`].
 pub const SOLVE_ONCE: &str = "--solve-once";
 
-/// Peak memory of cold solves with two threads, each case in a process of its own: a case, its size, and the bytes per element that it may
-/// take. Each is solved twice: where the machine is a virtual one, the first call waits for memory that the host has not given yet.
+/// Measures the peak memory of cold solves with two threads, each case in a process of its own. `cases`: the name of a case, its size, and the
+/// limit in bytes per element. Each case is solved twice: on a virtual machine the first call may wait for memory that the host has not provided yet.
 pub fn memory(cases: &[(&str, usize, f64)]) {
     println!("\n### Peak memory of one cold solve with two threads, bytes per element\n");
     println!("| case | before the call (h, the program) | peak | in all | first call | second call | at most | |");
@@ -362,10 +362,10 @@ pub fn memory(cases: &[(&str, usize, f64)]) {
     }
 }
 
-/// The argument that makes a process do nothing but [`solve_again`], for a profiler.
+/// The first argument of a process of this program that only calls [`solve_again`], for a profiler.
 pub const SOLVE_AGAIN: &str = "--solve-again";
 
-/// Cold solves, or time steps up and down again, for so many seconds and until all are done.
+/// Repeats cold solves, or time steps up and down again, for at least `at_least` seconds. Time steps end when the approach is that of the beginning.
 pub fn solve_again(name: &str, m: usize, steps: bool, at_least: f64, threads: usize) {
     by_processor(true);
     let case = by_name(name, m);
@@ -399,10 +399,10 @@ pub fn solve_again(name: &str, m: usize, steps: bool, at_least: f64, threads: us
     }
 }
 
-/// Two cold solves; prints the bytes held before them, the most that were held, and the seconds of each.
+/// Makes two cold solves. Prints the memory of the process before them in bytes, its peak, and the seconds of each solve.
 pub fn solve_once(name: &str, m: usize) {
     let case = by_name(name, m);
-    // What making the surface took must not count.
+    // The peak is reset, so that the memory for making the surface does not count.
     std::fs::write("/proc/self/clear_refs", "5").expect("the peak can be reset (Linux)");
     let before = status_of_memory("VmRSS:");
     let took = || {
@@ -415,7 +415,7 @@ pub fn solve_once(name: &str, m: usize) {
     println!("{before} {} {first} {second}", status_of_memory("VmHWM:"));
 }
 
-/// Bytes, from what Linux tells of this process.
+/// A quantity of memory in bytes from the entry `what` of Linux' status of this process.
 fn status_of_memory(what: &str) -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").expect("Linux");
     let line = status.lines().find(|line| line.starts_with(what)).expect("its line");

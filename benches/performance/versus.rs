@@ -1,4 +1,4 @@
-//! This library beside an older one: whole cold calls through the C ABI, in turns, each library in processes of its own.
+//! Compares this library with an older one: whole cold calls through the C ABI, in turns. Each call of a library is made in a process of its own.
 
 use std::ffi::{c_void, CString};
 use std::process::Command;
@@ -11,19 +11,20 @@ use crate::case::{by_name, Case};
 use crate::measure::{cold, median, seconds, shown};
 use crate::summary;
 
-/// The argument that makes a process do nothing but [`call`].
+/// The first argument of a process of this program that only calls [`call`].
 pub const CALL: &str = "--call";
 
-/// Turns, and seconds of each.
+/// The number of turns.
 const TURNS: usize = 5;
+/// The seconds for which a process repeats its call.
 const SECONDS: f64 = 0.5;
 
-/// The older library, and this one as it is shipped: `CONTACT_NORMAL_OLD` and `CONTACT_NORMAL_NEW`; none: `make bench` sets them.
+/// The paths of the older library and of this one as it is shipped, from `CONTACT_NORMAL_OLD` and `CONTACT_NORMAL_NEW`, which `make bench` sets.
 fn libraries() -> Option<[String; 2]> {
     Some([std::env::var("CONTACT_NORMAL_OLD").ok()?, std::env::var("CONTACT_NORMAL_NEW").ok()?])
 }
 
-/// The table.
+/// Prints the median times of both libraries, and their ratio.
 pub fn versus(threads: usize, sizes: &[usize]) {
     println!("\n### Cold calls through the C ABI beside commit 9fd3772, {threads} thread(s)\n");
     let Some(libraries) = libraries() else {
@@ -49,7 +50,7 @@ pub fn versus(threads: usize, sizes: &[usize]) {
     }
 }
 
-/// What a process of this program prints.
+/// The number that a process of this program prints when it gets these arguments.
 fn of_process(arguments: &[&str]) -> f64 {
     let program = std::env::current_exe().expect("this program's path");
     let out = Command::new(program).args(arguments).output().expect("a process");
@@ -57,7 +58,7 @@ fn of_process(arguments: &[&str]) -> f64 {
     String::from_utf8_lossy(&out.stdout).trim().parse().expect("a time")
 }
 
-/// A library, loaded.
+/// A loaded shared library.
 struct Library(*mut c_void);
 
 impl Library {
@@ -84,8 +85,8 @@ impl Library {
         unsafe { self.find::<unsafe extern "C" fn()>("contact_normal_init") }.is_some()
     }
 
-    /// A struct as this library begins it: that of ABI 2 is told its kind and its size, one of ABI 1 has a function for each struct, fills
-    /// less of it, and accepts the rest if that is zero.
+    /// A struct with the defaults of this library. ABI 2 has one function for all structs, which gets the kind and the size. ABI 1 has a function
+    /// for each struct, which sets fewer members; the library accepts the others if they are zero.
     ///
     /// # Safety
     /// `T` is the struct `contact_normal_<name>` of this kind, as the library has it.
@@ -127,7 +128,7 @@ impl Library {
     }
 }
 
-/// Words of the options of this header.
+/// The number of 8-byte words of `contact_normal_options`.
 const WORDS: usize = size_of::<contact_normal_options>() / 8;
 
 /// Prints the median time of cold calls of one case by one library.
@@ -174,7 +175,7 @@ pub fn call(library: &str, name: &str, m: usize, load: &str, threads: usize) {
     println!("{:e}", median(&times));
 }
 
-/// The case's own load, and the other one that belongs to it.
+/// The approach and the force of a case: one is its load, the other one that of the solution.
 fn both_loads(case: &Case) -> (f64, f64) {
     let (_, report) = cold(&case.scene(), &Default::default());
     match case.load {

@@ -1,9 +1,9 @@
-"""An effect that is not named is free: instructions and bytes of a plain solve beside the recorded ones, by callgrind.
+"""Checks that effects cost nothing in a scene without them: compares instructions and bytes of a plain solve with recorded ones, by callgrind.
 
     check.py library.so include [--record]
 
-cost.txt has a line for each change that added an effect: instructions, bytes, the compiler, and what came in. The last line counts. Another
-compiler makes other instructions: then only the bytes are compared, and the last line has to be recorded anew.
+cost.txt has a line for each change that added an effect: instructions, bytes, the compiler, and the effect. The last line is compared. Another
+compiler makes other instructions: then only the bytes are compared, and the last line has to be recorded again.
 """
 
 import os
@@ -15,21 +15,21 @@ import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 COST = HERE / "cost.txt"
-# An effect that is not named may cost one test for it: some thousand instructions of fifty million.
+# The largest allowed ratio. An effect that the scene does not have may cost one test of its pointer: some thousand instructions of fifty million.
 MORE = 1.002
 
 
 def run(command, **more):
-    """The output of a program."""
+    """Runs a program, and returns its output."""
     return subprocess.run(command, check=True, capture_output=True, text=True, **more)
 
 
 def measured(library, include):
-    """Instructions of one cold call, and the bytes of its solver."""
+    """Measures the instructions of one cold call, and the bytes of its solver."""
     abi = re.search(r"define CONTACT_NORMAL_ABI_VERSION (\d+)", (pathlib.Path(include) / "contact_normal.h").read_text())[1]
     with tempfile.TemporaryDirectory() as scratch:
         program, out = pathlib.Path(scratch) / "plain", pathlib.Path(scratch) / "callgrind"
-        # By the name under which it is installed.
+        # The program loads the library by the name under which it is installed.
         (pathlib.Path(scratch) / f"{library.name}.{abi}").symlink_to(library.resolve())
         run(["gcc", "-std=c99", "-O2", f"-I{include}", HERE / "plain.c", "-o", program, library.resolve()])
         environment = {**os.environ, "LD_LIBRARY_PATH": scratch}
@@ -41,7 +41,7 @@ def measured(library, include):
 
 
 def main(library, include, *options):
-    """Compares, or records."""
+    """Compares the costs with the last line of cost.txt, or first records a new line."""
     compiler = run(["rustc", "--version"]).stdout.split(" (")[0].strip()
     instructions, size = measured(pathlib.Path(library), include)
     if options:

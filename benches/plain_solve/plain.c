@@ -1,4 +1,4 @@
-/* A scene that names no effect: an ellipse on 128 x 128 elements, one cold call. Prints the bytes of its solver. */
+/* Makes one cold call for a scene without effects, an ellipse on 128 x 128 elements, and prints the bytes of its solver. */
 #include <contact_normal.h>
 #include <stdio.h>
 

@@ -1,8 +1,8 @@
-"""Judges `neglect_below` on random scenes: what is left out, and how far that is from a solve with every effect to a hundredth of the tolerance.
+"""Judges `neglect_below` on random scenes: compares each result with a solve that has all effects and a hundredth of the tolerance.
 
     neglect.py [--scenes 200] [--first 0] [--elements 64] [--list]
 
-Sizes of the effects are such that about half of them matter. Prints one line for each target, and with --list what is beyond it.
+The sizes of the effects are drawn so that about half of them matter. Prints one line for each target, and with --list the scenes beyond it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Random = np.random.Generator
 
 
 def surface(random: Random, m: int) -> np.ndarray:
-    """A paraboloid, one with waves on it, or a rough plane, over a square of side 1."""
+    """The undeformed distance of a paraboloid, a paraboloid with waves, or a rough plane, over a square of side 1."""
     x = (np.arange(m) + 0.5) / m - 0.5
     kind = random.integers(3)
     if kind == 2:
@@ -33,12 +33,12 @@ def surface(random: Random, m: int) -> np.ndarray:
 
 
 def about(random: Random, low: float, high: float) -> float:
-    """Any size between these, its logarithm as likely as any other."""
+    """A random number between `low` and `high` whose logarithm is uniformly distributed."""
     return float(np.exp(random.uniform(np.log(low), np.log(high))))
 
 
 def scene(random: Random, m: int) -> tuple[np.ndarray, dict[str, Any]]:
-    """A surface, and one to four effects beside friction or without it; G is 0.5 and E* about 0.7."""
+    """A random surface, and the arguments of a solve with random effects. G is 0.5 and E* about 0.7."""
     h = surface(random, m)
     bodies: dict[str, Any] = {"shear_modulus": 0.5, "poisson_ratio": 0.3}
     plain = contact_normal.solve(h, 1 / m, 1 / m, approach=about(random, 0.02, 0.1), **bodies)
@@ -54,7 +54,7 @@ def scene(random: Random, m: int) -> tuple[np.ndarray, dict[str, Any]]:
         effects["coating"] = ((thickness, 0.5 * stiffer, 0.3), None)
     elif random.integers(3) == 0:
         effects["period"] = "xy" if random.integers(2) else "y"
-    # Together with a coating or a period it is not solved.
+    # Friction is not solved together with a coating or a period.
     if not {"coating", "period"} & set(effects):
         effects["friction"] = {
             "coefficient": 0.3, "motion": "SHIFT" if random.integers(2) else "STEADY_ROLLING",
@@ -66,7 +66,7 @@ def scene(random: Random, m: int) -> tuple[np.ndarray, dict[str, Any]]:
 
 
 def numbers(result: contact_normal.Result, given: dict[str, Any]) -> dict[str, float]:
-    """The quantities that a solve promises to keep."""
+    """The quantities whose change by an omission `neglect_below` limits."""
     found = {"approach": result.approach, "force": result.force, "max_pressure": result.max_pressure}
     found["contact_area"] = result.report["corrected_area"]
     if "friction" in given:

@@ -1,9 +1,9 @@
-"""Judges searches for all quantities but force, pressure and area, their estimates and their prices: the truth is a grid four times finer.
+"""Judges searches for quantities other than force, pressure and area, their error estimates and their prices. The truth is a grid four times finer.
 
     quantities.py [--seeds N] [--first S] [--names "a;b"] [--list]
 
-The surfaces are those of surfaces.py that are smooth or end smoothly; the effects are drawn: none, a pressure limit, friction of like or of unlike bodies in
-each motion. Prints a table in Markdown.
+The surfaces are those of surfaces.py that are smooth or end smoothly. The effect is drawn at random: none, a pressure limit, or friction of bodies
+with equal or different elastic constants in one of the motions. Prints a table in Markdown.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ import contact_normal
 TARGETS = (3e-2, 1e-2)
 NORMAL = ("mean_gap", "stiffness", "max_von_mises", "von_mises_depth", "max_shear")
 TANGENTIAL = ("tangential_force", "creepage", "spin_moment", "stick_area")
-#: Elements across the contact on the finest of three grids, from which on estimates are believed; areas need more: docs/accuracy.md.
+#: Estimates are judged if the contact on the finest of three grids is at least this number of elements wide (otherwise 16): docs/accuracy.md.
 ENOUGH = {"stick_area": 32}
-#: Of surfaces that end within the contact stresses are infinite: these are none.
+#: The surfaces that do not end within the contact. Where they do, stresses are infinite.
 SURFACES = ("superellipsoid", "finite roller", "two balls", "torus", "worn", "elements to 20:1")
-#: Elements of the finest grid of a search, and of the truth.
+#: The largest number of elements of a grid of a search, and of the truth.
 MOST, FINEST = 2**16, 2**18
 FIRST = 16
-#: Seconds below which the call from Python is no small part.
+#: Shorter times, in seconds, are not compared, because the call from Python is a large part of them.
 SHORT = 1e-3
 
 
 class Tally:
-    """What one quantity has shown."""
+    """The results of all searches, estimates and prices of one quantity."""
 
     def __init__(self) -> None:
         self.searches = self.not_reached = self.unknown = 0
@@ -64,7 +64,7 @@ HEAD = """\
 
 
 def effects(random: np.random.Generator, name: str, pressure: float, approach: float) -> dict[str, Any]:
-    """Bodies with E* of about 1, and an effect or none."""
+    """Random elastic constants with an E* of about 1, and a random effect or none, as arguments of a solve."""
     unlike = name in TANGENTIAL and random.integers(2) == 1
     scene: dict[str, Any] = {"shear_modulus": (0.5, 0.9) if unlike else 0.7, "poisson_ratio": (0.3, 0.25) if unlike else 0.3}
     if name not in TANGENTIAL and random.integers(2):
@@ -78,7 +78,7 @@ def effects(random: np.random.Generator, name: str, pressure: float, approach: f
     if motion == "TRANSIENT_ROLLING":
         friction["rolling_distance"] = random.uniform(0.02, 0.1)
     if name == "creepage":
-        # Of the force that this creepage makes: a half.
+        # The scene gets half of the force that this creepage causes; see `scenes`.
         friction |= {"spin": 0.0, "half": True}
     if random.integers(3) == 0:
         scene["pressure_limit"] = random.uniform(0.4, 0.8) * pressure
@@ -86,14 +86,14 @@ def effects(random: np.random.Generator, name: str, pressure: float, approach: f
 
 
 class Judged:
-    """One surface with one scene, and one quantity of it."""
+    """A surface with a scene, and one quantity that is judged."""
 
     def __init__(self, surface: Surface, scene: dict[str, Any], name: str) -> None:
         self.surface, self.scene, self.name = surface, scene, name
         self._rows: dict[int, Any] = {}
 
     def row(self, doublings: int) -> Any:
-        """The quantity on a grid and two coarser ones, once."""
+        """The quantity on a grid, with the error from two coarser ones. It is computed once for each grid."""
         if doublings not in self._rows:
             h, element = self.surface.distance(doublings), self.surface.element(doublings)
             found = contact_normal.quantities(h, **element, names=[self.name], coarser=min(doublings, 2), tolerance=1e-7, **self.scene)
@@ -131,7 +131,7 @@ def scenes(name: str, seeds: range) -> Iterator[tuple[str, Judged]]:
 
 
 def judge(judged: Judged, tally: Tally, what: str, say: bool) -> None:
-    """Both searches, the estimates on all their grids, and the price list."""
+    """Judges the searches for all targets, the estimates on their grids, and the price list."""
     surface, name = judged.surface, judged.name
     found = []
     for target in TARGETS:
@@ -158,7 +158,7 @@ def judge(judged: Judged, tally: Tally, what: str, say: bool) -> None:
             tally.unknown += 1
             continue
         true = max(errors[k], 1e-6 * abs(row.value))
-        # A depth at the surface, on each grid.
+        # The depth of the largest stress may be 0 on each grid, without an error.
         if true == 0:
             continue
         tally.estimates.append(row.error / true)
@@ -168,7 +168,7 @@ def judge(judged: Judged, tally: Tally, what: str, say: bool) -> None:
 
 
 def judge_prices(judged: Judged, tally: Tally, what: str, say: bool) -> None:
-    """The rows of a price list beside what their grids and tolerances cost, stresses and stiffness included."""
+    """Compares the rows of a price list with the costs of solves on their grids with their tolerances, stresses and stiffness included."""
     surface = judged.surface
     rows = contact_normal.cost_of_accuracy(
         surface.h, **surface.element(0), shape=surface.shape, **judged.scene, targets=TARGETS, quantity=judged.name, threads=1

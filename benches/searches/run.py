@@ -1,8 +1,8 @@
-"""Judges searches for an accuracy and their estimates, kind of surface by kind: the truth is a grid four times finer.
+"""Judges searches for an accuracy, their error estimates and their prices, for each kind of surface. The truth is a grid four times finer.
 
     run.py [--seeds N] [--first S] [--kinds "a;b"] [--list]
 
-Two of three searches by the number of their seed have a pressure limit that no element reaches. Prints a table in Markdown.
+Two of three seeds have a pressure limit that no element reaches. Prints a table in Markdown.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from surfaces import KINDS, Surface
 import contact_normal
 
 TARGETS = (1e-2, 3e-3, 1e-3)
-#: A search that is within so many elements of the cheapest safe grid takes one doubling more at most.
+#: The ratio of the elements of a grid and of one with elements twice as large.
 DOUBLING = 4
-#: Elements across the contact from which on estimates are believed: docs/accuracy.md.
+#: Estimates of a quantity are judged if the contact is at least this number of elements wide: docs/accuracy.md.
 ENOUGH = {"force": 6, "max_pressure": 12, "corrected_area": 32}
-#: Products and seconds are predicted within such a factor, or not.
+#: Predictions of products and of seconds count as good within these factors.
 PRODUCTS, SECONDS = 1.3, 1.5
-#: Elements of a grid that is solved for the truth, at most.
+#: The largest number of elements of a grid that is solved for the truth.
 FINEST = 2**22
 
 
 @dataclass
 class Tally:
-    """What one kind of surface has shown."""
+    """The results of all searches, estimates and prices for one kind of surface."""
 
     searches: int = 0
     not_reached: int = 0
@@ -40,12 +40,12 @@ class Tally:
     elements: list[float] = field(default_factory=list)
     estimates: dict[str, list[float]] = field(default_factory=lambda: {name: [] for name in ENOUGH})
     unknown: dict[str, int] = field(default_factory=lambda: dict.fromkeys(ENOUGH, 0))
-    #: Predicted over counted products, and over the least seconds of three solves.
+    #: Ratios of predicted to counted products, and of predicted seconds to the least ones of three solves.
     products: list[float] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
 
     def add(self, other: Tally) -> None:
-        """Counts what another kind has shown, too."""
+        """Adds the results for another kind of surface."""
         self.searches += other.searches
         self.not_reached += other.not_reached
         for name in ("misses", "elements", "products", "seconds"):
@@ -56,7 +56,7 @@ class Tally:
 
 
 class Judged:
-    """One surface with one load, and what was solved of it."""
+    """A surface with a load, and the solutions on its grids."""
 
     def __init__(self, surface: Surface, load: dict[str, float], limit: float | None) -> None:
         self.surface, self.load, self.limit = surface, load, limit
@@ -71,7 +71,7 @@ class Judged:
         return contact_normal.solve(h, **element, **self.scene(), **options)
 
     def on(self, doublings: int) -> contact_normal.Result:
-        """The solution on a grid, once."""
+        """The solution on a grid. It is computed once for each grid."""
         if doublings not in self._solved:
             self._solved[doublings] = self.solved(doublings, tolerance=1e-8)
         return self._solved[doublings]
@@ -83,18 +83,18 @@ class Judged:
         return int(np.log2(mx / self.surface.shape[1]) + 0.5)
 
     def finest(self) -> int:
-        """Doublings of the truth of all grids of a search."""
+        """The number of doublings of the finest grid that is solved for the truth."""
         return int(np.log2(FINEST / (self.surface.shape[0] * self.surface.shape[1])) / 2)
 
 
 def across(contact: np.ndarray) -> int:
-    """Elements across the contact, in the direction with fewer."""
+    """The width of the contact in elements, in the direction in which it is smaller."""
     lines = [np.flatnonzero(contact.any(axis=axis)) for axis in (0, 1)]
     return min(int(line[-1] - line[0] + 1) if len(line) else 0 for line in lines)
 
 
 def cases(kind: str, seed: int) -> Iterator[Judged]:
-    """The surface of a seed by approach, and by the force that this takes."""
+    """Yields the surface of a seed with a given approach, and with the force that this approach causes."""
     surface = KINDS[kind](np.random.default_rng([seed, list(KINDS).index(kind)]))
     plain = Judged(surface, {"approach": surface.approach}, None)
     found = plain.on(2 if callable(surface.h) else 0)
@@ -112,7 +112,7 @@ def search(judged: Judged, target: float) -> contact_normal.AccurateResult:
 
 
 def is_reached(result: contact_normal.AccurateResult, tally: Any, what: str, say: bool) -> bool:
-    """Counts a search, and those that end before their target."""
+    """Whether a search has reached its target. Counts the search, and those that have not."""
     tally.searches += 1
     if result.status == 0:
         return True
@@ -123,7 +123,7 @@ def is_reached(result: contact_normal.AccurateResult, tally: Any, what: str, say
 
 
 def judge(judged: Judged, tally: Tally, what: str, say: bool) -> None:
-    """All searches of a surface with a load, and the estimates on all grids that these have used."""
+    """Judges the searches of a surface with a load for all targets, the estimates on all of their grids, and the price list."""
     found = [(target, search(judged, target)) for target in TARGETS]
     finest = max(judged.doublings(result.pressure.shape[1]) for _, result in found)
     truth = judged.value(judged.on(min(finest + 2, judged.finest())))
@@ -143,7 +143,7 @@ def judge(judged: Judged, tally: Tally, what: str, say: bool) -> None:
 
 
 def judge_prices(judged: Judged, tally: Tally, what: str, say: bool) -> None:
-    """The rows of a price list beside what their grids and tolerances cost."""
+    """Compares the rows of a price list with the costs of solves on their grids with their tolerances."""
     surface = judged.surface
     shape = {"shape": surface.shape} if callable(surface.h) else {}
     rows = contact_normal.cost_of_accuracy(surface.h, **surface.element(0), **shape, **judged.scene(), targets=TARGETS, threads=1)
@@ -187,7 +187,7 @@ def percent(part: float, of: float) -> str:
 
 
 def within(ratios: list[float], factor: float) -> str:
-    """The part of ratios within a factor, and their median."""
+    """The part of the ratios that are within a factor of 1, and their median, as text."""
     part = percent(sum(1 / factor <= r <= factor for r in ratios), len(ratios))
     return f"{part}, {np.median(ratios):.2f}" if ratios else ""
 

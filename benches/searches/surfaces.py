@@ -1,4 +1,4 @@
-"""Surfaces by which searches for an accuracy are judged: nothing in the library was chosen by them. Sizes and places come from a seed."""
+"""Surfaces by which searches for an accuracy are judged. No constant of the library was chosen by them. Sizes and positions are random numbers."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ Random = np.random.Generator
 
 @dataclass
 class Surface:
-    """A surface over the rectangle around the origin: a function of x and y, or its values on the first grid. E* is 1."""
+    """A surface over a rectangle around the origin: a function h of x and y, or its values on the first grid. The approach is for E* = 1."""
 
     h: Any
     approach: float
     size: tuple[float, float] = (1.0, 1.0)
-    #: (my, mx) of the first grid.
+    #: Elements (my, mx) of the first grid.
     shape: tuple[int, int] = (16, 16)
-    #: Elements of the finest grid of a search.
+    #: The largest number of elements of a grid of a search.
     most: int = 2**16
 
     def distance(self, doublings: int) -> np.ndarray:
-        """The undeformed distance on the grid with so many doublings."""
+        """The undeformed distance on the grid whose elements are halved `doublings` times."""
         if not callable(self.h):
             return self.refined(doublings)
         my, mx = (m << doublings for m in self.shape)
@@ -34,7 +34,7 @@ class Surface:
         return np.broadcast_to(self.h(x[None, :], y[:, None]), (my, mx)).astype(float)
 
     def refined(self, doublings: int) -> np.ndarray:
-        """The array as the library refines it: the surface of the last grid of a search whose target no grid meets."""
+        """The array as the library refines it. It is taken from the last grid of a search for an error that no grid reaches."""
         if doublings == 0:
             return self.h
         found = contact_normal.solve_to_accuracy(
@@ -45,19 +45,19 @@ class Surface:
         return fine
 
     def element(self, doublings: int) -> dict[str, float]:
-        """Element sizes of that grid."""
+        """The element sizes of the grid whose elements are halved `doublings` times."""
         return {"dx": self.size[0] / (self.shape[1] << doublings), "dy": self.size[1] / (self.shape[0] << doublings)}
 
 
 def _turned(random: Random, reach: float = 0.06) -> Callable[[Any, Any], tuple[Any, Any]]:
-    """Coordinates about another centre, turned by any angle."""
+    """A function that converts coordinates to those about a random centre, rotated by a random angle."""
     angle, (x0, y0) = random.uniform(0, np.pi), random.uniform(-reach, reach, 2)
     c, s = np.cos(angle), np.sin(angle)
     return lambda x, y: (c * (x - x0) + s * (y - y0), c * (y - y0) - s * (x - x0))
 
 
 def superellipsoid(random: Random) -> Surface:
-    """A sum of powers along two axes that are turned."""
+    """A sum of powers of the coordinates along two rotated axes."""
     n, m, a, b = random.uniform(1.6, 6), random.uniform(1.6, 6), random.uniform(0.35, 0.5), random.uniform(0.2, 0.5)
     turned = _turned(random)
 
@@ -69,7 +69,7 @@ def superellipsoid(random: Random) -> Surface:
 
 
 def finite_roller(random: Random) -> Surface:
-    """A roller along y with plain, rounded or chamfered ends; its elements are up to 1:4."""
+    """A roller along y with sharp, rounded or chamfered ends. The ratio of the sides of its elements is up to 1:4."""
     length, crown, kind = random.uniform(0.5, 0.8), random.uniform(0, 0.3), random.integers(3)
     y0, aspect = random.uniform(-0.06, 0.06), [1, 2, 4][random.integers(3)]
 
@@ -82,7 +82,7 @@ def finite_roller(random: Random) -> Surface:
 
 
 def balls(count: int) -> Callable[[Random], Surface]:
-    """Balls of other radii and heights, touched all or all but one."""
+    """A surface of several balls with different radii and heights."""
 
     def surface(random: Random) -> Surface:
         places = [(random.uniform(0.12, 0.3) * np.cos(a), random.uniform(0.12, 0.3) * np.sin(a))
@@ -99,14 +99,14 @@ def balls(count: int) -> Callable[[Random], Surface]:
 
 
 def torus(random: Random) -> Surface:
-    """A ring of a round section, off the centre."""
+    """A ring with a rounded section, off the centre."""
     r0, n, (x0, y0) = random.uniform(0.2, 0.3), random.uniform(1.8, 3), random.uniform(-0.06, 0.06, 2)
     depth = random.uniform(0.08, 0.16) ** n * 3
     return Surface(lambda x, y: 2 * abs(np.hypot(x - x0, y - y0) - r0) ** n, depth, most=2**18)
 
 
 def annulus(random: Random) -> Surface:
-    """A punch, flat or domed, with a hole."""
+    """A flat or domed punch with a hole."""
     outer, (x0, y0), dome = random.uniform(0.3, 0.42), random.uniform(-0.06, 0.06, 2), random.uniform(0, 0.3) * random.integers(2)
     inner = outer * random.uniform(0.3, 0.6)
 
@@ -118,7 +118,7 @@ def annulus(random: Random) -> Surface:
 
 
 def step(random: Random) -> Surface:
-    """A ball, half of which is lower by a step."""
+    """A ball of which one side is lower by a step."""
     at, turned = random.uniform(-0.1, 0.1), _turned(random) if random.integers(2) else (lambda x, y: (x, y))
     deep, approach = random.uniform(0.1, 0.6), random.uniform(0.1, 0.25)
 
@@ -130,13 +130,13 @@ def step(random: Random) -> Surface:
 
 
 def square_punch(random: Random) -> Surface:
-    """A flat punch, its sides anywhere between the elements."""
+    """A flat punch whose sides are not at the edges of elements."""
     (x0, y0), (a, b) = random.uniform(-0.06, 0.06, 2), random.uniform(0.2, 0.42, 2)
     return Surface(lambda x, y: np.where((abs(x - x0) < a) & (abs(y - y0) < b), 0.0, np.inf), 0.1)
 
 
 def worn(random: Random) -> Surface:
-    """A ball or an ellipsoid with a flat, or with a groove."""
+    """A ball or an ellipsoid with a flattened summit, or with a groove."""
     turned, ratio, deep = _turned(random), random.uniform(1, 3), random.uniform(0.1, 0.6)
     approach, groove, width = random.uniform(0.08, 0.2), random.integers(2), random.uniform(0.04, 0.1)
 
@@ -149,7 +149,7 @@ def worn(random: Random) -> Surface:
 
 
 def rough(random: Random, m: int = 128, hurst: float = 0.8) -> np.ndarray:
-    """Self-affine heights, rms 1; the shortest wave has 6 elements and more."""
+    """Self-affine heights with an rms of 1, whose shortest wave is at least 6 elements long."""
     k = np.hypot(np.fft.fftfreq(m)[None, :], np.fft.fftfreq(m)[:, None]) * m
     shortest, rolled = m / random.uniform(6, 12), random.uniform(2, 5)
     with np.errstate(divide="ignore"):
@@ -159,7 +159,7 @@ def rough(random: Random, m: int = 128, hurst: float = 0.8) -> np.ndarray:
 
 
 def measured(what: str) -> Callable[[Random], Surface]:
-    """A map as an instrument has it: with a tilt; and with holes, or with spikes of one element under a light load."""
+    """A map as an instrument measures it: with a tilt, and for "holes" with holes, for "spikes" with spikes of one element and a light load."""
 
     def surface(random: Random) -> Surface:
         m = 128
@@ -180,7 +180,7 @@ def measured(what: str) -> Callable[[Random], Surface]:
 
 
 def elements(random: Random) -> Surface:
-    """An ellipsoid that is as long as its elements are, or not; these are 1:1 to 20:1."""
+    """An ellipsoid on elements with sides of 1:1 to 20:1. The ratio of its own sides is that of the elements, or up to twice as large or small."""
     aspect, stretch = random.uniform(1, 20), random.uniform(0.5, 2)
     (x0, y0), n = random.uniform(-0.06, 0.06, 2), random.uniform(2, 3)
     h = lambda x, y: 2 * abs(x - x0) ** n + 2 * abs((y - y0 * aspect) / aspect * stretch) ** n  # noqa: E731
@@ -188,7 +188,7 @@ def elements(random: Random) -> Surface:
 
 
 def cut(random: Random) -> Surface:
-    """An ellipsoid whose contact goes on beyond the border of the grid."""
+    """An ellipsoid whose contact is cut off by the border of the grid."""
     a, ratio, n = random.uniform(0, 2 * np.pi), random.uniform(1, 3), random.uniform(2, 4)
     x0, y0 = 0.4 * np.cos(a), 0.4 * np.sin(a)
     return Surface(lambda x, y: abs(x - x0) ** n + ratio * abs(y - y0) ** n, random.uniform(0.15, 0.3) ** n * 3)

@@ -1,4 +1,4 @@
-//! What the library says of its errors, of accuracies and of their prices, against what is true. Every run is counted.
+//! Compares the library's error estimates, searches for an accuracy and price lists with exact solutions. Every run is counted.
 
 use std::collections::BTreeMap;
 
@@ -10,31 +10,31 @@ use contact_normal::solver::{
 use super::random::Random;
 use super::surfaces::Surface;
 
-/// Which surfaces; those of one seed.
+/// A function that returns the surfaces of one seed.
 pub type Surfaces = fn(&mut Random) -> Vec<Surface>;
 
-/// Targets of the force or the approach.
+/// Wanted relative errors of the force or the approach.
 pub const TARGETS: [f64; 3] = [1e-2, 1e-3, 1e-4];
-/// Elements in a direction that a search for an accuracy begins with.
+/// Elements in a direction of the first grid of a search for an accuracy.
 const START: usize = 16;
-/// Doublings from there to the finest grid that is looked at.
+/// Doublings of the elements in a direction from the first grid to the finest one that is studied.
 const DOUBLINGS: usize = 5;
 
-/// All surfaces of some seeds, by approach and by force.
+/// All surfaces of some seeds, each once with a given approach (false) and once with a given force (true).
 fn all(surfaces: Surfaces, seeds: std::ops::Range<u64>) -> impl Iterator<Item = (Surface, bool)> {
     let of_seed = move |seed| surfaces(&mut Random::new(seed));
     seeds.flat_map(move |seed| of_seed(seed).into_iter().zip(of_seed(seed))).flat_map(|(a, b)| [(a, false), (b, true)])
 }
 
-/// Estimates of one quantity on one family of surfaces.
+/// The estimated errors of one quantity on one family of surfaces.
 #[derive(Debug, Default)]
 pub struct Estimates {
     pub runs: usize,
-    /// Where the value is finite: no estimate.
+    /// The number of runs without an estimate, although the exact value is finite.
     pub unknown: usize,
-    /// Where it is infinite: an estimate.
+    /// The number of runs with an estimate, although the exact value is infinite.
     pub trusted_infinite: usize,
-    /// Estimated over true error, sorted.
+    /// The ratios of the estimated and the true error, sorted.
     pub ratios: Vec<f64>,
 }
 
@@ -48,31 +48,31 @@ impl Estimates {
         }
     }
 
-    /// Of the runs the part whose estimate is below 0.3 of the true error.
+    /// The part of the runs whose estimated error is below 0.3 of the true one.
     pub fn low(&self) -> f64 {
         self.ratios.iter().filter(|ratio| **ratio < 0.3).count() as f64 / self.runs as f64
     }
 
-    /// Of the runs the part without an estimate.
+    /// The part of the runs without an estimate.
     pub fn unknown(&self) -> f64 {
         self.unknown as f64 / self.runs as f64
     }
 
-    /// The ratio that a part of them is below.
+    /// A quantile of the ratios: `part` of them are smaller.
     pub fn quantile(&self, part: f64) -> f64 {
         let at = (part * (self.ratios.len() as f64 - 1.0)).round() as usize;
         self.ratios.get(at).copied().unwrap_or(f64::NAN)
     }
 }
 
-/// What is estimated.
+/// The quantities whose estimates are judged.
 pub const QUANTITIES: [&str; 4] = ["force, approach", "largest pressure", "area", "corrected area"];
 
-/// The quantities whose elements across the contact say from where on these are believed.
+/// For each of these the quantity of the library that says how many elements across the contact its estimates need.
 const BELIEVED_AS: [Quantity; 4] =
     [Quantity::Force, Quantity::MaxPressure, Quantity::ContactArea, Quantity::ContactArea];
 
-/// Estimates by quantity and family, of those grids that have enough elements across the contact for the quantity.
+/// Judges the estimates by quantity and family, on all grids that have enough elements across the contact for the quantity.
 pub fn estimates(
     surfaces: Surfaces,
     seeds: std::ops::Range<u64>,
@@ -91,7 +91,6 @@ pub fn estimates(
                 (value.contact_area, Some(surface.area), error.contact_area),
                 (value.corrected_area, Some(surface.area), error.corrected_area),
             ];
-            // The wave's area is a part of its period, which is 1.
             for (quantity, (value, exact, error)) in of_quantity.into_iter().enumerate() {
                 if across < BELIEVED_AS[quantity].enough_across() {
                     continue;
@@ -108,7 +107,7 @@ fn solved(surface: &Surface, m: usize, by_force: bool, options: &Options) -> Rep
     solved_across(surface, m, by_force, options).0
 }
 
-/// The same, and the elements across the contact in the direction with fewer.
+/// Solves a surface on a grid. Returns the report, and the elements across the contact in the direction with fewer (of a wave: along it).
 fn solved_across(surface: &Surface, m: usize, by_force: bool, options: &Options) -> (Report, usize) {
     let grid = surface.grid(m);
     let h = surface.distance(&grid);
@@ -118,7 +117,7 @@ fn solved_across(surface: &Surface, m: usize, by_force: bool, options: &Options)
     (report, if surface.period.is_some() { x } else { x.min(y) })
 }
 
-/// True relative errors of the force or the approach on START and its doublings.
+/// The true relative errors of the force or the approach on the first grid of a search and on finer ones.
 fn true_errors(surface: &Surface, by_force: bool) -> Vec<f64> {
     let options = Options { tolerance: 1e-8, ..Options::default() };
     let on = |k: usize| {
@@ -128,28 +127,28 @@ fn true_errors(surface: &Surface, by_force: bool) -> Vec<f64> {
     (0..=DOUBLINGS).map(on).collect()
 }
 
-/// Doublings to the coarsest grid from which on errors stay below a target; none if that is finer than studied.
+/// The number of doublings of the coarsest grid with an error below the target on this and all finer grids; None if no studied grid is so.
 fn cheapest_safe(errors: &[f64], target: f64) -> Option<usize> {
     (0..errors.len()).find(|k| errors[*k..].iter().all(|error| *error <= target))
 }
 
-/// One search for an accuracy.
+/// The result of a search for an accuracy.
 pub struct Search {
     pub family: &'static str,
     pub by_force: bool,
     pub target: f64,
     pub stop: Outcome,
-    /// True error over the target.
+    /// The true error over the target.
     pub miss: f64,
-    /// Columns and rows of contact.
+    /// The number of columns and of rows with contact.
     pub across: (usize, usize),
     pub elements: usize,
-    /// Those of the cheapest safe grid, from which on no error is above the target, if that was studied.
+    /// The elements of the cheapest safe grid: no error on this and finer grids is above the target. None: it is finer than studied.
     pub cheapest: Option<usize>,
     pub reason: String,
 }
 
-/// Solves to accuracies, from 16 elements on.
+/// Searches for all targets, beginning with grids of 16 elements in a direction.
 pub fn searches(surfaces: Surfaces, seeds: std::ops::Range<u64>) -> Vec<Search> {
     let mut found = Vec::new();
     for (surface, by_force) in all(surfaces, seeds) {
@@ -185,28 +184,28 @@ pub fn searches(surfaces: Surfaces, seeds: std::ops::Range<u64>) -> Vec<Search> 
     found
 }
 
-/// Columns and rows that the contact area spans.
+/// The number of columns and of rows with an element in contact.
 fn spans(contact: &[bool], grid: &Grid) -> (usize, usize) {
     let columns = (0..grid.mx).filter(|x| (0..grid.my).any(|y| contact[grid.index(*x, y)])).count();
     (columns, contact.chunks(grid.mx).filter(|row| row.contains(&true)).count())
 }
 
-/// A price beside what was paid.
+/// A row of a price list, and the true costs of its grid and tolerance.
 pub struct Paid {
     pub family: &'static str,
     pub by_force: bool,
     pub price: Price,
-    /// Doublings from the start to the grid of the price, and to the cheapest safe one, if that was studied.
+    /// The number of doublings from the first grid to the grid of the price, and to the cheapest safe one, if that was studied.
     pub doublings: (i32, Option<usize>),
-    /// Seconds on that grid with that tolerance; less than 0: not solved, there is no grid or it is too fine.
+    /// The seconds of a solve on the grid of the price with its tolerance; negative: not solved, because there is no grid or it is too fine.
     pub seconds: f64,
-    /// True relative error there.
+    /// The true relative error of this solve.
     pub error: f64,
-    /// Seconds of the price list.
+    /// The seconds that the price list itself took.
     pub list: f64,
 }
 
-/// Price lists, and what each row of at most `most` columns costs in truth.
+/// Makes price lists, and solves each row of at most `most` columns to find its true costs.
 pub fn prices(surfaces: Surfaces, seeds: std::ops::Range<u64>, most: usize) -> Vec<Paid> {
     let mut found = Vec::new();
     for (surface, by_force) in all(surfaces, seeds) {
@@ -232,7 +231,7 @@ pub fn prices(surfaces: Surfaces, seeds: std::ops::Range<u64>, most: usize) -> V
                 // A price may name a grid that is coarser than the first one of a search.
                 let elements = if k < 0 { START >> -k } else { START << k };
                 let mut times = Vec::new();
-                // The least of five, as samples are timed: what a machine does that is not busy with something else.
+                // The least of five times, as in the library's own samples: the time of a machine that does nothing else.
                 for _ in 0..5 {
                     let began = std::time::Instant::now();
                     let report = solved(&surface, elements, by_force, &options);

@@ -1,7 +1,8 @@
-//! What accuracy costs, and what the library says of it, against what is true: the tables of docs/accuracy.md and docs/notes/2026-11-accuracy.md.
+//! Measures what accuracy costs, and compares what the library says of it with exact solutions: the tables of docs/accuracy.md and
+//! docs/notes/2026-11-accuracy.md.
 //!
-//! `accuracy [estimates] [searches] [prices] [study] [--quick]`: those tables, or all. The study is written to build/accuracy.csv, from
-//! which benches/accuracy.py draws. Every run counts; seeds are fixed.
+//! `accuracy [estimates] [searches] [prices] [study] [--quick]` prints the named tables, or all. The study is written to build/accuracy.csv,
+//! from which benches/accuracy.py makes its tables. Seeds are fixed, and no run is left out.
 
 use std::collections::BTreeMap;
 

@@ -1,5 +1,5 @@
-//! Errors against seconds and work units, for closed-form problems and for surfaces that refer to a grid four times finer; by all
-//! methods, tolerances and grids. Writes comma-separated lines; `make accuracy` draws them.
+//! Measures errors, seconds and work units on several grids, with several methods and tolerances. The exact solution is a closed form, or that of a
+//! grid four times finer. The results are comma-separated lines, which `make accuracy` draws.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::fmt::Write;
@@ -12,12 +12,12 @@ use contact_normal::solver::{solve, Method, Options};
 use super::case;
 
 const METHODS: [Method; 4] = [Method::Auto, Method::FullMultigrid, Method::Multigrid, Method::Norm];
-/// On all grids: a tenth of 1 %, 0.1 % and 0.01 %, and what the grid gives.
+/// The tolerances on all grids: a tenth of the targets 1 %, 0.1 % and 0.01 %, and one that leaves only the error of the grid.
 const GRIDS: [f64; 4] = [1e-3, 1e-4, 1e-5, 1e-8];
-/// E* = 1.
+/// Bodies with E* = 1.
 const UNIT: Bodies = Bodies { shear_modulus: [0.5, f64::INFINITY], poisson_ratio: [0.0, 0.0] };
 
-/// A problem on any number of elements, and what is exactly found.
+/// A problem on a grid, and the exact value of what its load does not prescribe: the force or the approach.
 struct Problem {
     name: &'static str,
     grid: Grid,
@@ -65,8 +65,8 @@ fn closed_form(name: &str, m: usize) -> Problem {
     }
 }
 
-/// Westergaard (1939): a wave of length 1 and amplitude D on a half-space; the mean pressure that closes half of it is
-/// `p* sin^2(pi/4)`, p* = pi E* D, at the approach `(p/pi)(1 - log(p/p*))` of the mean planes.
+/// A wave of length 1 and amplitude D on a half-space (Westergaard 1939). With p* = pi E* D, half of it is in contact under the mean pressure
+/// `p = p* sin^2(pi/4)`. The approach of the mean planes is `(p/pi)(1 - log(p/p*))` for E* = 1.
 fn westergaard(m: usize) -> Problem {
     let amplitude = 0.01;
     let grid = Grid::new(m, 4, 1.0 / m as f64, 1.0 / m as f64).expect("a grid");
@@ -78,7 +78,7 @@ fn westergaard(m: usize) -> Problem {
     Problem { name: "wave", grid, h, bodies: UNIT, load: Load::Force(force), exact }
 }
 
-/// Solves; what was found, seconds, work units, cycles. None if the method does not get there.
+/// Solves a problem. Returns the force or the approach that is found, the seconds, the work units and the cycles; None if the method fails.
 fn run(problem: &Problem, method: Method, tolerance: f64) -> Option<(f64, f64, f64, u64)> {
     let mut scene = Scene::new(problem.grid, &problem.h, problem.bodies, problem.load);
     if problem.name == "wave" {
@@ -94,12 +94,12 @@ fn of_case(case: case::Case, name: &'static str, exact: f64) -> Problem {
     Problem { name, grid: case.grid, h: case.h, bodies: case.bodies, load: case.load, exact }
 }
 
-/// All lines.
+/// Makes the study, and returns all lines.
 pub fn study(quick: bool) -> String {
     let mut lines = String::from("case,method,mx,tolerance,seconds,work,cycles,error\n");
     let largest = if quick { 256 } else { 2048 };
     let mut study = |problem: &Problem, method: Method, tolerance: f64| {
-        // NORM's products grow with the size, cycles with sweeps are slow: they show it on grids up to these.
+        // The products of NORM grow with the size, and cycles with Gauss-Seidel sweeps are slow. Grids up to these sizes show that.
         let most = match method {
             Method::Norm | Method::Multigrid => 256,
             Method::FullMultigrid => 512,
@@ -109,7 +109,7 @@ pub fn study(quick: bool) -> String {
             return;
         }
         if let Some((found, mut seconds, work, cycles)) = run(problem, method, tolerance) {
-            // The least of nine, of long runs of two: what a machine does that is not busy with something else.
+            // The least of nine times, or of two if they are long: the time of a machine that does nothing else.
             for _ in 0..if seconds < 0.1 { 8 } else { 1 } {
                 seconds = run(problem, method, tolerance).map_or(seconds, |again| seconds.min(again.1));
             }

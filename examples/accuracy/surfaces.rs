@@ -1,14 +1,17 @@
-//! Surfaces with exact solutions, for E* = 1 and with random sizes and places from a fixed seed.
+//! Surfaces with exact solutions for E* = 1. Their sizes and positions are random numbers of a fixed seed.
 //!
-//! Axisymmetric bodies (Galin 1946; Sneddon 1965): with `g(x) = x integral from 0 to x of f'(r)/sqrt(x^2 - r^2) dr` of the profile f,
+//! For axisymmetric bodies with the profile f(r) and a contact of radius a let `g(x) = x integral from 0 to x of f'(r)/sqrt(x^2 - r^2) dr`. Then
+//! (Galin 1946; Sneddon 1965)
 //!
 //! ```text
 //! approach = g(a),    F = 2 integral from 0 to a of (g(a) - g(x)) dx,    p(r) = 1/pi integral from r to a of g'(x)/sqrt(x^2 - r^2) dx
 //! ```
 //!
-//! For `f = c r^n` that is `g = k c x^n`, `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`; g is linear in f, so sums of powers are as easy.
-//! The wave is Westergaard's (1939): pressed together to the part `sin^2(pi a/L)` of the pressure `p* = pi D/L` that closes it, contact is
-//! `|x| <= a`, and the approach of the mean planes is the integral of that of strips, `(L p/pi)(1 - log(p/p*))`.
+//! For `f = c r^n` this gives `g = k c x^n` with `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`. As g is linear in f, sums of powers have sums of
+//! these.
+//!
+//! The wave, of length L and amplitude D, is Westergaard's (1939). The mean pressure `p* = pi D/L` closes it. Under `p = p* sin^2(pi a/L)` the
+//! contact is `|x| <= a` around each crest, and the approach of the mean planes is `(L p/pi)(1 - log(p/p*))`.
 
 use std::f64::consts::{PI, TAU};
 
@@ -18,22 +21,22 @@ use contact_normal::scene::{Bodies, Load, Period, Scene};
 
 use super::random::Random;
 
-/// E* = 1.
+/// Bodies with E* = 1.
 pub const BODIES: Bodies = Bodies { shear_modulus: [0.5, f64::INFINITY], poisson_ratio: [0.0, 0.0] };
 
-/// A surface, the rectangle around it and what is exact there.
+/// A surface over a rectangle, with its exact solution.
 pub struct Surface {
-    /// What it is a case of: the tables have a row for each.
+    /// The kind of surface. Tables have one row for each kind.
     pub family: &'static str,
-    /// Sides of the rectangle, whose middle is the origin.
+    /// The sides of the rectangle, whose middle is the origin.
     pub size: (f64, f64),
-    /// Columns and rows of a grid of "m elements", in eighths of m.
+    /// The columns and the rows of a grid for the size m, in eighths of m.
     pub eighths: (usize, usize),
     pub h: Box<dyn Fn(f64, f64) -> f64>,
     pub period: Option<Period>,
     pub approach: f64,
     pub force: f64,
-    /// `None`: infinite.
+    /// The largest pressure; `None`: it is infinite.
     pub max_pressure: Option<f64>,
     pub area: f64,
 }
@@ -51,7 +54,7 @@ impl Surface {
         h
     }
 
-    /// The same into memory that is there.
+    /// Writes the undeformed distance at the centres of the elements into `h`.
     pub fn write(&self, grid: &Grid, h: &mut [f64]) {
         let centre = |i: usize, d: f64, m: usize| (i as f64 + 0.5 - 0.5 * m as f64) * d;
         for (i, value) in h.iter_mut().enumerate() {
@@ -71,7 +74,7 @@ impl Surface {
         Scene { period: self.period, ..Scene::new(grid, h, BODIES, self.load(by_force)) }
     }
 
-    /// What the load does not prescribe.
+    /// The exact approach if the force is given, otherwise the exact force.
     pub fn exact(&self, by_force: bool) -> f64 {
         if by_force {
             self.approach
@@ -81,7 +84,7 @@ impl Surface {
     }
 }
 
-/// A sum of `c r^n` around a centre, touched over the radius a.
+/// A sum of powers `c r^n` around a centre, given as pairs (n, c), with a contact of radius a.
 fn axisymmetric(family: &'static str, powers: &[(f64, f64)], a: f64, centre: (f64, f64)) -> Surface {
     let terms: Vec<(f64, f64, f64)> = powers.iter().map(|&(n, c)| (n, c, c * share(n))).collect();
     let h_terms = terms.clone();
@@ -105,10 +108,9 @@ fn axisymmetric(family: &'static str, powers: &[(f64, f64)], a: f64, centre: (f6
     }
 }
 
-/// `sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: the integral of `n t^(n-1)/sqrt(1 - t^2)`, by t = sin s and the midpoint rule, which
-/// is exact to round-off for the powers used here but for the first ones, which have more points.
+/// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: the integral of `n t^(n-1)/sqrt(1 - t^2)` from 0 to 1, with t = sin s and by the midpoint rule.
 fn share(n: f64) -> f64 {
-    // n sin^(n-1) over a quarter of a period: s = v^2 (3 - 2 v) pi/2 takes the root at 0 away.
+    // The integrand is n sin^(n-1) s over a quarter of a period. The substitution s = v^2 (3 - 2 v) pi/2 removes its singular derivatives at 0.
     const POINTS: usize = 4000;
     let sum: f64 = (0..POINTS)
         .map(|i| {
@@ -120,14 +122,14 @@ fn share(n: f64) -> f64 {
     sum / POINTS as f64
 }
 
-/// The largest of `p(r) = 1/pi integral from 0 to sqrt(a^2 - r^2) of sum of k n (r^2 + t^2)^((n-2)/2) dt`.
+/// The maximum over r of `p(r) = 1/pi integral from 0 to sqrt(a^2 - r^2) of sum of k n (r^2 + t^2)^((n-2)/2) dt`.
 fn highest_pressure(terms: &[(f64, f64, f64)], a: f64) -> f64 {
     const POINTS: usize = 2000;
     let pressure = |r: f64| {
         let end = (a * a - r * r).max(0.0).sqrt();
         let sum: f64 = (0..POINTS)
             .map(|i| {
-                // t = end v^4: of a root at 0 nothing is left.
+                // The substitution t = end v^4 removes a singularity at 0.
                 let v = (i as f64 + 0.5) / POINTS as f64;
                 let (t, dt) = (end * v.powi(4), 4.0 * end * v.powi(3));
                 let x = r * r + t * t;
@@ -155,7 +157,7 @@ fn highest_pressure(terms: &[(f64, f64, f64)], a: f64) -> f64 {
     best
 }
 
-/// A flat punch of radius a: F = 2 a d.
+/// A flat punch of radius a, whose force at the approach d is F = 2 a d.
 fn flat_punch(family: &'static str, a: f64, centre: (f64, f64), approach: f64) -> Surface {
     let h = move |x: f64, y: f64| if (x - centre.0).hypot(y - centre.1) < a { 0.0 } else { f64::INFINITY };
     Surface {
@@ -168,11 +170,11 @@ fn flat_punch(family: &'static str, a: f64, centre: (f64, f64), approach: f64) -
     }
 }
 
-/// Hertz, its axes turned.
+/// An elliptic paraboloid with rotated axes, whose curvatures have this ratio and whose contact (Hertz) has the longer semi-axis `extent`.
 fn ellipse(family: &'static str, ratio: f64, angle: f64, extent: f64, centre: (f64, f64)) -> Surface {
     let (small, large) = (1.0, ratio);
     let unit = hertz(small, large, 1.0, 1.0).expect("a contact");
-    // The longer semi-axis is `extent`: lengths grow with the root of the approach.
+    // The semi-axes are proportional to the square root of the approach.
     let approach = (extent / unit.semi_axis_x).powi(2);
     let exact = hertz(small, large, approach, 1.0).expect("a contact");
     let (s, c) = angle.sin_cos();
@@ -190,14 +192,14 @@ fn ellipse(family: &'static str, ratio: f64, angle: f64, extent: f64, centre: (f
     }
 }
 
-/// A wave along x of length 1, amplitude 0.01, touched over the part `2 a` of it; two periods.
+/// A wave along x of length 1 and amplitude 0.01 with two periods, of which `part` is in contact.
 fn wave(family: &'static str, part: f64, shift: f64) -> Surface {
     let amplitude = 0.01;
     let closing = PI * amplitude;
     let mean = closing * (0.5 * PI * part).sin().powi(2);
     let h = move |x: f64, _: f64| amplitude * (1.0 - (TAU * (x - shift)).cos());
     Surface {
-        // Twice as many elements along the wave, in strips as wide as they need be.
+        // All elements in x are along the wave; in y an eighth of their number is enough.
         size: (1.0, 1.0),
         eighths: (8, 1),
         h: Box::new(h),
@@ -212,7 +214,7 @@ fn wave(family: &'static str, part: f64, shift: f64) -> Surface {
 
 const POWERS: [&str; 8] = ["cone", "r^2", "r^3", "r^4", "r^5", "r^6", "r^7", "r^8"];
 
-/// The surfaces that the issue names; of a family they differ in size and place.
+/// The surfaces by which the estimates were developed. Those of one family differ in size and position.
 pub fn studied(random: &mut Random) -> Vec<Surface> {
     let mut all = Vec::new();
     let radius = |random: &mut Random| random.between(0.2, 0.42);
@@ -229,7 +231,7 @@ pub fn studied(random: &mut Random) -> Vec<Surface> {
     all
 }
 
-/// Surfaces that nothing was chosen by: for validation only.
+/// Surfaces for validation only: no constant of the library was chosen by them.
 pub fn held_back(random: &mut Random) -> Vec<Surface> {
     let radius = |random: &mut Random| random.between(0.2, 0.42);
     let place = |random: &mut Random| (random.between(-0.06, 0.06), random.between(-0.06, 0.06));

@@ -1,7 +1,7 @@
-//! What each effect costs, alone, on the paper's ellipse: the table of docs/effects.md.
+//! Measures what each effect costs alone, on the ellipse of the paper: the table of docs/effects.md.
 //!
-//! `cargo run --release --example effects`: the table, medians of repeats in turns. `-- NAME M`: one solve of one row on M x M elements,
-//! to count its instructions: `valgrind --tool=callgrind target/release/examples/effects plain 128`.
+//! `cargo run --release --example effects` prints the table, with medians of repeats in turns. `-- NAME M` makes one solve of one row on M x M
+//! elements, to count its instructions: `valgrind --tool=callgrind target/release/examples/effects plain 128`.
 
 use std::time::Instant;
 
@@ -24,12 +24,12 @@ const ROWS: [&str; 10] = [
 ];
 const REPEATS: usize = 7;
 
-/// The arrays of a scene.
+/// The grid and the arrays of the scenes.
 struct Arrays {
     grid: Grid,
     h: Vec<f64>,
     compliances: Vec<f64>,
-    /// Two halves.
+    /// The patch of each element: the left and the right half of the grid.
     patch: Vec<i32>,
 }
 
@@ -39,7 +39,7 @@ impl Arrays {
         let centre = |i: usize, d: f64| (i as f64 + 0.5 - 0.5 * m as f64) * d;
         let square = |i: usize| (centre(i % m, grid.dx).powi(2), centre(i / m, grid.dy).powi(2));
         let h = (0..grid.len()).map(|i| 0.0016681 * square(i).0 + 0.0030671 * square(i).1).collect();
-        // mm3/N: up to about what the half-space gives way over 1 mm; a strip has none.
+        // Compliances in mm3/N, 0 in the middle: at most about the displacement of the half-space by a unit pressure on a square of 1 mm.
         let compliances = (0..grid.len()).map(|i| 1e-5 * (square(i).0 / 20.0).min(1.0)).collect();
         let patch = (0..grid.len()).map(|i| i32::from(2 * (i % m) >= m)).collect();
         Arrays { grid, h, compliances, patch }
@@ -66,7 +66,7 @@ impl Arrays {
         scene
     }
 
-    /// Normals that turn by 0.6 over the grid.
+    /// Tables for a surface whose normals rotate by 0.6 rad over the grid: the coefficients are multiplied by the cosine of the angle between normals.
     fn row_tables(&self, bodies: Bodies) -> RowTables {
         let Grid { mx, my, dx, dy } = self.grid;
         let half_space = HalfSpace::new(dx, dy, bodies.compliance());
@@ -83,7 +83,7 @@ impl Arrays {
     }
 }
 
-/// A cold call; its seconds.
+/// Makes a cold call. Returns its seconds and the report.
 fn call(scene: &Scene<'_>) -> (f64, Report) {
     let began = Instant::now();
     let (solver, stop, report) = solve(scene, &Options::default()).expect("a solvable scene");
@@ -110,10 +110,10 @@ fn main() {
     let mut times = ROWS.map(|_| (Vec::new(), Vec::new()));
     let mut reports = Vec::new();
     for repeat in 0..REPEATS {
-        for (scene, times) in scenes.iter().zip(&mut times) {
+        for (scene, (setup_times, solve_times)) in scenes.iter().zip(&mut times) {
             let (seconds, report) = call(scene);
-            times.0.push(report.setup_seconds);
-            times.1.push(seconds - report.setup_seconds);
+            setup_times.push(report.setup_seconds);
+            solve_times.push(seconds - report.setup_seconds);
             if repeat == 0 {
                 reports.push(report);
             }

@@ -1,7 +1,7 @@
-//! What friction costs, in products of two components and in seconds: `cargo run --release --example friction [-- quick] [rolling]`.
+//! Measures what friction costs, in products of two components and in seconds: `cargo run --release --example friction [-- quick] [rolling]`.
 //!
-//! A wheel on a rail (CONTACT's performance tests), Cattaneo's ball, rough surfaces, random ellipses with motions and forces; steady
-//! rolling of the wheel and of ellipses.
+//! The scenes are a wheel on a rail (CONTACT's performance tests), Cattaneo's ball, rough surfaces, and random ellipses with given creepages or
+//! forces; and steady rolling of the wheel and of ellipses.
 
 mod rolling;
 #[path = "../smoothers/rough.rs"]
@@ -61,7 +61,7 @@ fn wheel(grids: &[usize]) -> Result<(), Error> {
     Ok(())
 }
 
-/// The tangential problem on pressures that are given.
+/// Solves the tangential problem for a given traction bound g = mu p, with G = 1.
 pub fn tangential(
     grid: Grid,
     nu: f64,

@@ -1,4 +1,4 @@
-//! Steady rolling: a wheel on a rail, and ellipses of Hertz, with creepages and with forces.
+//! Measures the costs of steady rolling: a wheel on a rail, and ellipses of Hertz, with given creepages and with given forces.
 
 use contact_normal::error::Error;
 use contact_normal::scene::{Bodies, Friction, Load, Scene};

@@ -7,32 +7,33 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Motion, Prescribed};
 use contact_normal::solver::Measures;
 
-/// Hertz' pressures of a ball with radius of contact 1 and `mu p_0 = 1`, `G = 1`, pushed sideways until the stick area has the radius c
-/// (Cattaneo 1938; Mindlin 1949; Johnson, Contact Mechanics, section 7.2). Exact for nu = 0, where tractions in x displace nothing in y.
+/// A ball with a contact of radius 1, `mu p_0 = 1` and `G = 1`, pushed sideways until the stick area has the radius c (Cattaneo 1938; Mindlin 1949;
+/// Johnson, Contact Mechanics, section 7.2). The solution is exact for nu = 0, where tractions in x cause no displacements in y.
 pub struct Cattaneo {
     pub grid: Grid,
     pub bound: Vec<f64>,
-    /// The shift, of body 1 over body 2: negative, so that the force is positive.
+    /// The shift of body 1 over body 2. It is negative, so that the force on body 1 is positive.
     pub shift: f64,
     c: f64,
 }
 
-/// A solution beside the exact one.
+/// The errors of a solution.
 #[derive(Clone, Copy, Default)]
 pub struct Compared {
     /// `sum |q - q_exact| / sum |q_exact|`.
     pub error: f64,
-    /// Radius of a disc of the area that sticks.
+    /// The radius of a circle with the area of the sticking elements.
     pub stick_radius: f64,
 }
 
 impl Cattaneo {
-    /// On m x m elements, C being 10/11 of the grid across.
+    /// The case on m x m elements. The contact is 10/11 as wide as the grid.
     pub fn new(m: usize, c: f64) -> Cattaneo {
         let d = 2.2 / m as f64;
         let grid = Grid { mx: m, my: m, dx: d, dy: d };
         let bound = (0..grid.len()).map(|i| (1.0 - radius2(&grid, i)).max(0.0).sqrt()).collect();
-        // At nu = 0 u(0) of g is that of a normal pressure with E* = G: pi/2 times the slope of the paraboloid, 1, times the radius.
+        // For nu = 0 a traction displaces as a normal pressure does with E* = G. The displacement of the centre by sqrt(radius^2 - r^2) is
+        // pi/2 radius^2.
         let displacement = |radius: f64| PI / 2.0 * radius * radius;
         let shift = -(displacement(1.0) - displacement(c));
         Cattaneo { grid, bound, shift, c }
@@ -43,7 +44,7 @@ impl Cattaneo {
         self.bound.iter().sum::<f64>() * self.grid.element_area()
     }
 
-    /// Beside the exact tractions.
+    /// Compares a solution with the exact tractions and stick area.
     pub fn compare(&self, solution: &Solution) -> Compared {
         let (mut error, mut all, mut stick) = (0.0, 0.0, 0.0);
         for (i, q) in solution.traction.iter().enumerate() {
@@ -63,7 +64,7 @@ fn radius2(grid: &Grid, i: usize) -> f64 {
     x * x + y * y
 }
 
-/// A shift of a part of that at which all of a rough surface would slide, were it a ball's: `mu` times the approach, times
+/// A shift of a rough surface: `part` of the shift at which a ball with the same approach would slide, `mu` times the approach times
 /// `(2 - nu)/(2 (1 - nu))` (Ciavarella 1998; Jaeger 1998).
 pub fn rough_shift(part: f64, measures: &Measures) -> Friction<'static> {
     let length = part * 0.3 * measures.approach * 1.7 / 1.4;
@@ -74,7 +75,7 @@ pub fn rough_shift(part: f64, measures: &Measures) -> Friction<'static> {
     }
 }
 
-/// An ellipse of Hertz with semi-axes 1 and b.
+/// A Hertz contact ellipse with semi-axes 1 and b, and a motion or force.
 pub struct Ellipse {
     pub grid: Grid,
     pub nu: f64,
@@ -83,7 +84,7 @@ pub struct Ellipse {
 }
 
 impl Ellipse {
-    /// b/a in 0.2 .. 5, nu in 0 .. 0.49; motions over decades, or forces up to 99 % of mu N.
+    /// A random shift: b/a between 0.2 and 5, nu between 0 and 0.49; creepages over decades, or forces of up to 99 % of mu N.
     pub fn random(seed: u64, m: usize, forces: bool) -> Ellipse {
         let mut state = seed.wrapping_mul(2).wrapping_add(u64::from(forces)).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
         let mut next = || {
@@ -111,12 +112,12 @@ impl Ellipse {
         Ellipse { grid, nu, bound, friction }
     }
 
-    /// The same, in steady rolling; with forces spin, too.
+    /// A random case of steady rolling, which has spin also if forces are given.
     pub fn random_rolling(seed: u64, m: usize, forces: bool) -> Ellipse {
         let mut case = Ellipse::random(seed, m, forces);
         case.friction.motion = Motion::SteadyRolling;
         if forces {
-            // From none to as much as leaves 99 % of mu N: golden ratio, as if random.
+            // Spins between 0 and 0.1, with which 99 % of mu N can still be reached. Multiples of the golden ratio serve as random numbers.
             let part = (0.618 * seed as f64).fract();
             case.friction.spin = if seed % 3 == 0 { 0.1 * part } else { 0.0 };
         }

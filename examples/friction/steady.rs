@@ -1,11 +1,11 @@
-//! Steady rolling: Hertz' ellipses on which methods are compared, and how many products an earlier program took for them.
+//! Steady rolling of Hertz ellipses: the cases, and the results and numbers of products of an earlier program of this project.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Motion, Prescribed};
 
-/// nu of all cases; `G = 1`.
+/// The Poisson ratio of all cases, whose shear modulus is 1.
 pub const NU: f64 = 0.28;
-/// Names, creepages and spin of cases with creepages.
+/// The cases with given creepages: name, creepages in x and y, spin.
 const CREEPAGES: [(&str, [f64; 2], f64); 11] = [
     ("tiny", [-0.05, 0.0], 0.0),
     ("small", [-0.3, 0.1], 0.1),
@@ -19,7 +19,7 @@ const CREEPAGES: [(&str, [f64; 2], f64); 11] = [
     ("spin 4", [0.0; 2], 4.0),
     ("spin 20", [0.0; 2], 20.0),
 ];
-/// Names, parts of mu N and spin of cases with forces.
+/// The cases with given forces: name, forces in x and y as parts of mu N, spin.
 const FORCES: [(&str, [f64; 2], f64); 6] = [
     ("F .1", [0.1, 0.0], 0.0),
     ("F .5 .3, spin .5", [0.5, 0.3], 0.5),
@@ -29,15 +29,16 @@ const FORCES: [(&str, [f64; 2], f64); 6] = [
     ("F 0, spin 1.5", [0.0; 2], 1.5),
 ];
 
-/// Ratios b/a, b across the rolling direction.
+/// The ratios b/a of the semi-axes; b is across the rolling direction.
 pub const RATIOS: [f64; 3] = [1.0, 0.25, 4.0];
-/// Cases of a ratio; those from [`FIRST_OF_FORCES`] on have forces given.
+/// The number of cases of each ratio. Those from [`FIRST_OF_FORCES`] on have given forces.
 pub const CASES: usize = CREEPAGES.len() + FORCES.len();
 pub const FIRST_OF_FORCES: usize = CREEPAGES.len();
-/// Elements across.
+/// The numbers of elements in each direction of the grids.
 pub const SIZES: [usize; 4] = [32, 64, 128, 256];
 
-/// Of each ratio and case: `F/(mu N)` that was found, or the creepages; products to 1e-4 and to 1e-6 on the four sizes.
+/// The known results of a case: the force `F/(mu N)`, or the creepages if forces are given, on the finest grid; the products to residuals of 1e-4 and
+/// of 1e-6 on grids of the four sizes.
 pub type Known = ([f64; 2], [u8; 4], [u8; 4]);
 #[rustfmt::skip]
 pub const KNOWN: [[Known; CASES]; 3] = [
@@ -100,7 +101,7 @@ pub const KNOWN: [[Known; CASES]; 3] = [
     ],
 ];
 
-/// One of them.
+/// A case on a grid.
 pub struct Rolling {
     pub name: &'static str,
     pub grid: Grid,
@@ -109,7 +110,7 @@ pub struct Rolling {
 }
 
 impl Rolling {
-    /// Case `k` on m x m elements, `b` the ratio; the box is 1.1 times the semi-axes, which are 1 and b.
+    /// Case `k` of the ratio b on m x m elements. The semi-axes are 1 and b, and the sides of the grid are 2.2 times as long.
     pub fn new(b: f64, k: usize, m: usize) -> Rolling {
         let (grid, bound) = ellipse(b, m);
         let carried = bound.iter().sum::<f64>() * grid.element_area();
@@ -127,7 +128,7 @@ impl Rolling {
     }
 }
 
-/// Hertz' pressures over an ellipse with semi-axes 1 and b, 1 in the middle.
+/// The grid and the pressures of Hertz on an ellipse with semi-axes 1 and b. The pressure in the middle is 1.
 pub fn ellipse(b: f64, m: usize) -> (Grid, Vec<f64>) {
     let grid = Grid { mx: m, my: m, dx: 2.2 / m as f64, dy: 2.2 * b / m as f64 };
     let bound = (0..grid.len())

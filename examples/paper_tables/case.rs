@@ -5,14 +5,15 @@ use contact_normal::methods::multigrid::{CycleShape, SmootherKind};
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Outcome, Report, Solver};
 
-/// Curvatures in 1/mm, approach in mm.
+/// The coefficients of x^2 and y^2 of the undeformed distance, in 1/mm.
 pub const CURVATURE: (f64, f64) = (0.0016681, 0.0030671);
+/// The approach, in mm.
 pub const APPROACH: f64 = 0.1091;
-/// Steel, N/mm2.
+/// The shear modulus of steel, in N/mm2.
 pub const SHEAR_MODULUS: f64 = 82000.0;
 pub const POISSON_RATIO: f64 = 0.28;
 
-/// `[-10, 10] x [-6, 6]` mm in m x m elements.
+/// The grid of m x m elements on `[-10, 10] x [-6, 6]` mm.
 pub fn grid(m: usize) -> Grid {
     Grid::new(m, m, 20.0 / m as f64, 12.0 / m as f64).expect("a valid grid")
 }
@@ -29,12 +30,13 @@ pub fn undeformed_distance(m: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The scene, approach prescribed.
+/// The scene with a prescribed approach.
 pub fn scene(m: usize, h: &[f64]) -> Scene<'_> {
     Scene::new(grid(m), h, Bodies::same(SHEAR_MODULUS, POISSON_RATIO), Load::Approach(APPROACH))
 }
 
-/// Table 1: the system on `C^1 = {h <= approach}`; cycles or iterations, and the mean reduction factor of the residual.
+/// Table 1: solves the linear system on the fixed contact area `C^1 = {h <= approach}`. Also returns the mean factor by which a cycle, or an
+/// iteration, reduces the residual.
 pub fn linear_system(
     m: usize,
     method: Method,
@@ -59,7 +61,7 @@ pub fn linear_system(
     (stop, report, factor)
 }
 
-/// Tables 2 and 3: the whole problem by one of the methods.
+/// Tables 2 and 3: solves the whole contact problem by one of the methods.
 pub fn whole_problem(m: usize, method: Method, pre_sweeps: usize, post_sweeps: usize) -> (Outcome, Report) {
     let h = undeformed_distance(m);
     let options = Options {

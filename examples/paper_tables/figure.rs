@@ -2,15 +2,16 @@
 
 use std::path::Path;
 
-/// Pixels per element, and between panels.
+/// Pixels along the side of an element.
 const ELEMENT: usize = 10;
+/// Pixels around each panel.
 const MARGIN: usize = 24;
-/// Blue: contact, yellow: exterior, as in the paper; white around.
+// As in the paper, contact is blue and the exterior yellow. Lines between elements are white.
 const CONTACT: [u8; 3] = [38, 64, 171];
 const EXTERIOR: [u8; 3] = [250, 221, 90];
 const LINE: [u8; 3] = [255, 255, 255];
 
-/// Draws the panels (a), (b), (c) side by side; element (0, 0) at the lower left.
+/// Draws the panels (a), (b), (c) side by side. Element (0, 0) is at the lower left.
 pub fn draw(path: &Path, m: usize, panels: &[Vec<bool>]) -> Result<(), Box<dyn std::error::Error>> {
     let side = m * ELEMENT;
     let (width, height) = (panels.len() * (side + MARGIN) + MARGIN, side + 2 * MARGIN);

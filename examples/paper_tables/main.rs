@@ -1,4 +1,5 @@
-//! Tables 1, 2 and 3 and figure 4 of the paper, the paper's numbers beside ours, and the tables carried on to finer grids.
+//! Reproduces tables 1, 2 and 3 and figure 4 of the paper: prints the numbers of the paper beside those of this library, and continues the tables to
+//! finer grids.
 //!
 //! `cargo run --release --example paper_tables [-- FIGURE.png]`
 
@@ -12,7 +13,7 @@ use contact_normal::methods::multigrid::transfer;
 use contact_normal::methods::multigrid::SmootherKind::{GaussSeidel, Jacobi, RedBlack};
 use contact_normal::solver::{solve, Method, Options, Outcome, Report};
 
-/// V(n1, n2) of the columns of tables 2 and 3.
+/// The cycles V(n1, n2) of the columns of tables 2 and 3.
 const CYCLES: [(usize, usize); 3] = [(1, 1), (1, 0), (0, 1)];
 const FINER: [usize; 2] = [512, 1024];
 
@@ -23,7 +24,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     figure_4(&path)
 }
 
-/// Count, or a dash when the method did not converge.
+/// The number of cycles as text, or a dash if the method did not converge.
 fn count(stop: Outcome, report: &Report) -> String {
     if stop == Outcome::Converged {
         report.count.cycles.to_string()
@@ -63,7 +64,7 @@ fn table_1() {
         for (kind, omega, width) in [(GaussSeidel, 1.0, 16), (RedBlack, 1.0, 16), (Jacobi, 1.0, 16), (Jacobi, 0.5, 20)]
         {
             let (stop, report, factor) = linear_system(m, Method::Multigrid, kind, omega, 100);
-            // A dash: not within 100 cycles; with a factor all the same if the residual still falls.
+            // If 100 cycles are not enough, `count` writes a dash. The factor is printed all the same if the residual decreases.
             let factor = if stop == Outcome::Stagnated { "diverges".into() } else { format!("({factor:.4})") };
             print!(" {:>width$}", format!("{} {factor}", count(stop, &report)));
         }
@@ -122,9 +123,10 @@ fn table_2_and_3() {
 fn figure_4(path: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
     let m = 32;
     let h = case::undeformed_distance(m);
-    // (a) {h <= approach}
+    // (a) The contact area of the first step, {h <= approach}.
     let by_distance: Vec<bool> = h.iter().map(|&h| h <= APPROACH).collect();
-    // (b) what FMG starts with on this grid: the pressures of the next coarser one, and where e <= 0
+    // (b) The contact area with which full multigrid starts on this grid: where the pressures interpolated from the next coarser grid are positive, or
+    // e <= 0.
     let options = Options { method: Method::FullMultigrid, ..Options::default() };
     let coarse_h = case::undeformed_distance(m / 2);
     let (coarse, _, _) = solve(&case::scene(m / 2, &coarse_h), &options)?;
@@ -133,7 +135,7 @@ fn figure_4(path: &std::path::Path) -> Result<(), Box<dyn std::error::Error>> {
     transfer::interpolate(&fine_grid, &coarse_grid, &coarse.state().p, &mut p, |to, value| *to = value);
     transfer::interpolate(&fine_grid, &coarse_grid, &coarse.state().u, &mut u, |to, value| *to = value);
     let by_full_multigrid: Vec<bool> = (0..m * m).map(|i| p[i] > 0.0 || h[i] - APPROACH + u[i] <= 0.0).collect();
-    // (c) the true one
+    // (c) The contact area of the solution.
     let (fine, _, _) = solve(&case::scene(m, &h), &options)?;
     let exact = fine.state().contact.clone();
 

@@ -1,7 +1,8 @@
-//! What limits of the pressure cost: the work of AUTO beside that of the plain scene.
+//! Measures what pressure limits cost: the work of AUTO relative to that for the scene without a limit.
 //!
-//! `cargo run --release --example pressure_limits` prints one row per scene: an ellipse and a rough surface of 64 to 512 elements, by
-//! approach and by force, with limits of parts of the largest pressure; then the mean, the largest, and how many are above 3.
+//! `cargo run --release --example pressure_limits` prints one row per scene: an ellipse and a rough surface on 64 x 64 to 512 x 512 elements, with a
+//! given approach or force, and with limits that are parts of the largest pressure. Then it prints the mean and the largest of the factors, and
+//! how many of them are above 3.
 
 use contact_normal::scene::{Each, Load, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
@@ -10,7 +11,7 @@ use contact_normal::solver::{solve, Options, Outcome};
 #[allow(dead_code)]
 mod case;
 
-/// Parts of the largest pressure of the plain scene.
+/// The limits, as parts of the largest pressure without a limit.
 const SHARES: [f64; 9] = [0.95, 0.9, 0.8, 0.75, 0.6, 0.5, 0.4, 0.3, 0.2];
 
 fn main() {
@@ -33,7 +34,7 @@ fn main() {
     println!("{} scenes: geometric mean {mean:.2}, largest {largest:.2}, {above} above 3", factors.len());
 }
 
-/// The plain scene and its limits; a limit that the force is too large for is left out.
+/// Prints the row of a scene. A limit with which the force cannot be carried is left out.
 fn row(case: &case::Case, load: Load, largest: f64, factors: &mut Vec<f64>) {
     let plain = case.scene_with(load);
     let work = |scene: &Scene<'_>| match solve(scene, &Options::default()) {

@@ -1,6 +1,6 @@
-//! The table of friction: every hard case in every motion, the residual reached and the products spent.
+//! The table of friction: the residual and the number of products of every hard case in every motion.
 
-#[allow(dead_code)] // of the tests' cases
+#[allow(dead_code)] // This example uses a part of the tests' module only.
 #[path = "../../tests/friction/hard/mod.rs"]
 mod hard;
 
@@ -8,7 +8,7 @@ use contact_normal::solver::Outcome;
 use hard::cases::{all, MOTIONS};
 use hard::certificate::{judge, Verdict};
 
-/// Prints it.
+/// Solves all cases, and prints the table.
 pub fn print() {
     let names: Vec<&str> = MOTIONS.iter().map(|(name, _)| *name).collect();
     println!("| case | grid | {} |", names.join(" | "));
@@ -30,7 +30,7 @@ pub fn print() {
     println!("| **solved** | | {} |", sums.join(" | "));
 }
 
-/// Residual and products, after the status where it is not the one expected.
+/// A cell of the table: the residual and the products, after the status if that is not the expected one.
 fn cell(verdict: Verdict) -> String {
     match verdict {
         Verdict::Solved { residual, products } => format!("{residual:.0e}, {products:.1}"),

@@ -1,10 +1,11 @@
-//! The tables of docs/reliability_table.md and docs/reliability_friction.md: the residual reached and the products spent, by every method or motion.
+//! Prints the tables of docs/reliability_table.md and docs/reliability_friction.md: the residual and the number of products of each case, for every
+//! method or motion.
 //!
-//! `cargo run --release --locked --example reliability_table`; the second table alone: `... -- friction`
+//! `cargo run --release --locked --example reliability_table`, or for the second table alone `... -- friction`.
 
 #[path = "../../tests/problems/dense.rs"]
 mod dense;
-#[allow(dead_code)] // the tests' cases, of which this takes a part
+#[allow(dead_code)] // This example uses a part of the tests' module only.
 #[path = "../../tests/problems/families/mod.rs"]
 mod families;
 mod friction;
@@ -57,7 +58,7 @@ fn print_normal() {
     println!("| **solved** | | | {} |", sums.join(" | "));
 }
 
-/// Whether status OK came back and the certificate, recomputed from the returned arrays, holds.
+/// Whether the status is OK and the certificate, recomputed from the returned arrays, holds.
 fn is_solved(case: &Case, outcome: &Result<Found, Error>) -> bool {
     outcome.as_ref().is_ok_and(|found| {
         let measures = recompute(case, found);
@@ -66,7 +67,7 @@ fn is_solved(case: &Case, outcome: &Result<Found, Error>) -> bool {
     })
 }
 
-/// Residual and work units, after the status where it is not OK.
+/// A cell of the table: the residual and the work units, after the status if that is not OK.
 fn cell(case: &Case, outcome: &Result<Found, Error>) -> String {
     let found = match outcome {
         Ok(found) => found,
@@ -83,7 +84,7 @@ fn cell(case: &Case, outcome: &Result<Found, Error>) -> String {
     }
 }
 
-/// Three decimals, of numbers that are not too long for a table.
+/// A number with three decimals, in exponential notation if it would be too long for the table.
 fn shown(value: f64) -> String {
     if value.abs() < 1e9 {
         format!("{value:.3}")

@@ -1,11 +1,12 @@
-//! Gauss-Seidel and the FFT smoother in V-cycles, and the production method beside them, on the paper's ellipse and on a
-//! rough surface: cycles on the finest grid, products on it, work units on all grids, seconds of the whole call (set-up
-//! included, one thread; medians of interleaved runs). Then what is wrong with red-black order.
+//! Compares Gauss-Seidel and the FFT smoother in V-cycles, and the method AUTO, on the ellipse of the paper and on a rough surface.
 //!
-//! `cargo run --release --example smoothers [-- SIZE...]`; the sizes are 128 256 512 1024 if none are given.
+//! The numbers are the cycles on the finest grid, the products on it, the work units on all grids, and the seconds of the whole call with set-up on
+//! one thread (medians of runs in turns). Then the example shows why red-black order is worse.
+//!
+//! `cargo run --release --example smoothers [-- SIZE...]`; by default the sizes are 128 256 512 1024.
 
 #[path = "../paper_tables/case.rs"]
-#[allow(dead_code)] // the paper's runs, of which this example uses the scene
+#[allow(dead_code)] // This example uses only the scene of the module.
 mod case;
 mod red_black;
 mod rough;
@@ -19,7 +20,7 @@ use contact_normal::solver::{ActiveSet, Guess, Method, Options, Outcome, Report,
 const CYCLES: [(usize, usize); 3] = [(1, 1), (1, 0), (0, 1)];
 const SMOOTHERS: [SmootherKind; 2] = [SmootherKind::GaussSeidel, SmootherKind::Fft];
 
-/// One way to solve a problem, and what it took.
+/// A way to solve a problem, with its times and its result.
 struct Run {
     options: Options,
     seconds: Vec<f64>,
@@ -42,7 +43,7 @@ fn main() {
     red_black::study();
 }
 
-/// The whole problem by full multigrid, then the equations on the contact area that it found, from p = 0.
+/// Compares the smoothers on the whole problem, and on the equations on the contact area of its solution, which are solved from p = 0.
 fn problem(name: &str, scene: &Scene<'_>, m: usize) {
     let production = Options { max_cycles: 2000, ..Options::default() };
     let mut solver = Solver::new(scene, &production).expect("a valid scene");

@@ -1,4 +1,4 @@
-//! Why red-black order is worse than lexicographic order: neither the coarse grid nor a red-black sweep sees a checkerboard.
+//! Shows why red-black order is worse than lexicographic order: neither the coarse grid nor a red-black sweep reduces the error of a checkerboard.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace};
@@ -12,7 +12,7 @@ use super::case::linear_system;
 const ORDERS: [SmootherKind; 2] = [SmootherKind::GaussSeidel, SmootherKind::RedBlack];
 const OMEGAS: [f64; 5] = [1.0, 0.8, 0.6, 0.5, 0.4];
 
-/// Prints what one sweep leaves, and the V(1,1) cycles and factors of table 1's system.
+/// Prints the part of a checkerboard error that one sweep leaves, and the V(1,1) cycles and reduction factors for the linear system of table 1.
 pub fn study() {
     println!("\nPart of a checkerboard error (-1)^(ix + iy) that one sweep with omega = 1 leaves, full contact");
     println!("{:>6} {:>16} {:>16}", "grid", "lexicographic", "red-black");

@@ -1,7 +1,7 @@
-//! A long run: a wheel that rolls over a wavy rail, solved step after step from the solution before. `make soak`.
+//! A long test, `make soak`: a wheel rolls over a wavy rail, and each step is solved from the solution of the step before.
 //!
-//! Every result is certified; the sequence is run again, from a handle of its own, and must give the same bits; from one lap to the next
-//! nothing may drift and no memory grow. Says what it found, and fails if that is not so.
+//! Every result is certified. The sequence is solved twice, each time with a new handle, and must give the same bits. From one lap to the next
+//! approaches must not drift, and memory must not grow. The program prints its results, and fails if a condition is violated.
 
 use std::process::ExitCode;
 
@@ -10,7 +10,7 @@ use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{InitialGuess, Options, Outcome, Solver};
 
 const M: usize = 48;
-/// Steps of a lap, after which the wheel is where it was.
+/// The number of steps of a lap, after which the wheel is at the place where it began.
 const LAP: usize = 500;
 const TOLERANCE: f64 = 1e-6;
 
@@ -25,7 +25,7 @@ fn step(grid: &Grid, step: usize, h: &mut [f64]) -> Load {
     Load::Force(10_000.0 * (1.0 + 0.3 * (3.0 * phase).sin()))
 }
 
-/// Of one lap: the sum of all approaches, a hash of all bits, products.
+/// The results of one lap: the sum of all approaches, a hash of the bits of all pressures, and the number of products.
 #[derive(Clone, Copy, PartialEq)]
 struct Lap {
     approaches: f64,
@@ -52,7 +52,7 @@ fn lap(grid: &Grid, solver: &mut Solver, options: &Options, h: &mut [f64]) -> Re
     Ok(lap)
 }
 
-/// Pages of memory that this process holds.
+/// The number of memory pages that this process holds.
 fn pages() -> u64 {
     let statm = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
     statm.split_whitespace().nth(1).and_then(|pages| pages.parse().ok()).unwrap_or(0)
@@ -71,7 +71,7 @@ fn run(solves: usize) -> Result<(), String> {
         let (mut results, mut held) = (Vec::new(), 0);
         for number in 0..laps {
             results.push(lap(&grid, &mut solver, &options, &mut h)?);
-            // After two laps all memory is there that is ever needed.
+            // After two laps the process must hold all the memory that it ever needs.
             match number {
                 1 => held = pages(),
                 _ if number > 1 && pages() > held + 64 => {
@@ -85,7 +85,7 @@ fn run(solves: usize) -> Result<(), String> {
     if runs[0] != runs[1] {
         return Err("the second run differs from the first".into());
     }
-    // The first lap starts from nothing; from then on laps may differ by the tolerance of each step.
+    // The first lap starts without a solution, so the second one is the reference. Later laps may differ by the tolerance of each step.
     let (first, last) = (runs[0][1], runs[0][laps - 1]);
     let drift = (last.approaches - first.approaches).abs() / first.approaches.abs();
     if !(drift <= TOLERANCE) {

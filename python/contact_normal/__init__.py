@@ -1,11 +1,11 @@
-"""contact-normal: the elastic normal contact problem on numpy arrays.
+"""contact-normal: solves elastic contact problems on numpy arrays.
 
     import contact_normal
     result = contact_normal.solve(h, dx, dy, force=82.0e3, shear_modulus=82000.0, poisson_ratio=0.28)
     result.pressure, result.contact, result.approach, result.max_pressure, result.ledger
     result.plot()
 
-Arrays are (my, mx), C order: x runs along a row. Constants have the names of include/contact_normal.h without the prefix.
+Arrays are (my, mx) in C order: x runs along a row. Constants have the names of include/contact_normal.h without the prefix CONTACT_NORMAL_.
 """
 
 from ._arguments import SolveOptions

@@ -1,4 +1,4 @@
-"""`python -m contact_normal`: the command line, `contact-normal` where the package is installed."""
+"""Runs the command line by `python -m contact_normal`. Where the package is installed, the command `contact-normal` does the same."""
 
 import sys
 

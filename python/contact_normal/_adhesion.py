@@ -14,7 +14,7 @@ _KNOWN = ("law", "work", "range", "smear", "start", "stiffness", "stability", "s
 
 
 def adhesion(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
-    """A `contact_normal_adhesion`, and the array that it points to."""
+    """A `contact_normal_adhesion` from the mapping of a caller, and the array of works of adhesion to which it points, if there is one."""
     if not isinstance(value, Mapping):
         raise TypeError(f"adhesion is {value!r}; it must be a mapping of {', '.join(_KNOWN)}")
     unknown = [str(name) for name in value if name not in _KNOWN]

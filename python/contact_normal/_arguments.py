@@ -1,4 +1,4 @@
-"""Checks the arguments of callers, and converts them to those of the C ABI."""
+"""Checks the arguments of Python callers, and converts them to numbers, arrays and structs of the C ABI."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Both = Union[float, "npt.ArrayLike"]
 
 
 class AccuracyOptions(TypedDict, total=False):
-    """The options of calls that have their own time limit; see `SolveOptions`."""
+    """The options of `solve_to_accuracy` and `cost_of_accuracy`, whose `max_seconds` is an argument; see `SolveOptions`."""
 
     method: str | int
     smoother: str | int
@@ -55,31 +55,32 @@ class SolveOptions(AccuracyOptions, total=False):
     smoother : str or int
         Smoother of the multigrid methods: "AUTO" (default), "GAUSS_SEIDEL", "RED_BLACK", "JACOBI" or "FFT".
     pre_sweeps, post_sweeps : int
-        n1 and n2 of a cycle V(n1, n2); default 1.
+        n1 and n2 of a multigrid cycle V(n1, n2): the sweeps of the smoother before and after the coarse-grid correction; default 1.
     relaxation : float
-        Relaxation of the smoother, in (0, 2); default 0: a value that suits the smoother.
+        Relaxation factor of the smoother, in (0, 2); default 0: a value that suits the smoother.
     coarsest : int
         The coarsest grid has at most this many elements in each direction, 1 to 16; default 4.
     active_set : str or int
-        "FREE" (default) or "FIXED": the contact area is that of `contact`.
+        "FREE" (default): the contact area is found; "FIXED": the contact area is the argument `contact`.
     initial_guess : str or int
-        "NONE" (default), "GIVEN" (set if there is a `pressure`) or "PREVIOUS" (for a `Solver`).
+        "NONE" (default), "GIVEN" (set if there is a `pressure` or a `contact`) or "PREVIOUS" (for a `Solver`: its last result).
     criterion : str or int
-        "RESIDUAL" (default) or "UPDATE".
+        What the tolerance limits: "RESIDUAL" (default), or "UPDATE", the last change of the pressures.
     tolerance : float
         Tolerance of the criterion, between 0 and 1; default 1e-6.
     error_ratio : float
         If > 0, the solve may stop once the residual is below this part of the estimated discretisation error; default 0.
     max_cycles : int
-        Largest number of cycles, or iterations, on the finest grid; default 1000. A search for a pull (adhesion, force < 0) may take more.
+        Largest number of cycles, or iterations, on the finest grid; default 1000. With adhesion the search for a state with a force < 0 may take more.
     max_seconds : float
         If > 0, the call ends after this time, with the best result so far; default 0: no limit.
     neglect_below : float
-        For `solve` alone: effects whose omission changes no quantity by more than this part are left out, and `Result.neglected` names them. Default 0: none.
+        For the function `solve` alone. Effects whose omission changes no quantity by more than this relative amount are left out, and `Result.neglected` names
+        them. Default 0: none is left out.
     threads : int
-        Default 1; 0: all cores.
+        Number of threads; default 1; 0: all cores.
     precision : str or int
-        "AUTO" (default), "DOUBLE" or "MIXED".
+        Precision of the computation: "AUTO" (default), "DOUBLE", or "MIXED": single precision in inner iterations where that saves time, never in the result.
     dump : str or path, optional
         The file into which a call that fails writes its inputs, for `contact-normal-replay`: "failed-%p-%n.dump", where %p is the number of the process and %n
         that of the dump. docs/dump.md says when.
@@ -118,7 +119,7 @@ def number(name: str, value: Any) -> float:
 
 
 def relative(name: str, value: Any) -> float:
-    """A wanted relative error."""
+    """`value` as a wanted relative error, which must be below 1."""
     error = number(name, value)
     if error >= 1.0:
         raise ValueError(f"{name} is {error:g}; it is a relative error, below 1: that of 1 % is 0.01")
@@ -133,13 +134,13 @@ def flag(name: str, value: Any) -> bool:
 
 
 def two(name: str, value: Any) -> tuple[float, float]:
-    """Two numbers."""
+    """`value` as a pair of numbers."""
     x, y = both(name, value, "two numbers")
     return number(f"{name}[0]", x), number(f"{name}[1]", y)
 
 
 def both(name: str, values: Any, rule: str = "a pair") -> tuple[Any, Any]:
-    """The two parts of a pair."""
+    """The two members of a pair, which is refused unless it is `rule`."""
     try:
         count = 0 if isinstance(values, (str, bytes, Mapping)) else len(values)
     except TypeError:
@@ -155,7 +156,7 @@ _PAIR = c_double * 2
 
 
 def pointer(array: npt.NDArray[Any], kind: Any = c_double) -> Any:
-    """The address of a contiguous array."""
+    """A C pointer to the first element of a contiguous array."""
     if array.size and array.flags.writeable:
         return POINTER(kind)(kind.from_buffer(array))
     return array.ctypes.data_as(POINTER(kind))
@@ -165,14 +166,14 @@ _DOUBLE = np.dtype(np.float64)
 
 
 def _has_mask(values: Any) -> bool:
-    """Whether an array, or an array in a list, has a mask."""
+    """Whether a value is a masked array, or a list with a masked array in it."""
     if isinstance(values, (list, tuple)):
         return any(_has_mask(one) for one in values)
     return isinstance(values, np.ma.MaskedArray)
 
 
 def _plain(name: str, values: Any, kinds: str, rule: str) -> npt.NDArray[Any]:
-    """`values` as an array of one of the `kinds` of numpy, without a mask."""
+    """`values` as an array whose dtype is of one of numpy's `kinds`. Masked arrays are refused; `rule` describes the kinds in messages."""
     try:
         array: npt.NDArray[Any] = np.asanyarray(0.0 if (has_mask := _has_mask(values)) else values)
     except ValueError:
@@ -188,7 +189,7 @@ def _plain(name: str, values: Any, kinds: str, rule: str) -> npt.NDArray[Any]:
 
 
 def real(name: str, values: Any) -> Doubles:
-    """An array of doubles, of any shape. Values that a double cannot hold are refused."""
+    """`values` as an array of doubles, of any shape. Values that a double cannot hold are refused."""
     if type(values) is np.ndarray and values.dtype is _DOUBLE:
         return values
     array = _plain(name, values, "fiu", "real numbers")
@@ -206,7 +207,7 @@ def real(name: str, values: Any) -> Doubles:
 
 
 def without_mask(name: str, values: Any) -> Any:
-    """The array with +infinity in masked places."""
+    """`values` with +infinity in the place of masked elements."""
     if isinstance(values, (list, tuple)):
         return [without_mask(name, one) for one in values]
     if not isinstance(values, np.ma.MaskedArray):
@@ -217,7 +218,7 @@ def without_mask(name: str, values: Any) -> Any:
 
 
 def refuse_x_first(name: str, values: Any) -> None:
-    """Refuses an xarray array whose first dimension is x: rows are along y."""
+    """Refuses an array of xarray whose first dimension is x, because arrays of this package are (my, mx)."""
     dimensions = getattr(values, "dims", None)
     if not isinstance(dimensions, tuple) or len(dimensions) != 2:
         return
@@ -227,7 +228,7 @@ def refuse_x_first(name: str, values: Any) -> None:
 
 
 def distances(name: str, values: Any) -> Doubles:
-    """Undeformed distances. Masked elements have no surface, and so a distance of +infinity."""
+    """`values` as undeformed distances. Masked elements have no surface, so that their distance is +infinity."""
     if type(values) is np.ndarray:
         return real(name, values)
     refuse_x_first(name, values)
@@ -236,13 +237,13 @@ def distances(name: str, values: Any) -> Doubles:
 
 
 def doubles(name: str, values: Any, shape: tuple[int, ...] | None = None, dimensions: str = "(my, mx)") -> Doubles:
-    """Contiguous doubles of `shape`, or with the dimensions that `dimensions` names; copied only if necessary."""
+    """`values` as contiguous doubles of `shape`, or of any shape with as many dimensions as `dimensions` lists; copied only if necessary."""
     refuse_x_first(name, values)
     return shaped(name, real(name, values), shape, dimensions)
 
 
 def shaped(name: str, array: Doubles, shape: tuple[int, ...] | None = None, dimensions: str = "(my, mx)") -> Doubles:
-    """The array, contiguous; refused if it has another shape."""
+    """`array` in contiguous memory. It is refused if it has another shape, or another number of dimensions than `dimensions` lists."""
     if array.ndim != dimensions.count(",") + 1:
         raise ValueError(f"{name} has shape {array.shape}; it must be {dimensions}")
     if shape is not None and array.shape != shape:
@@ -251,7 +252,7 @@ def shaped(name: str, array: Doubles, shape: tuple[int, ...] | None = None, dime
 
 
 def integers(name: str, values: Any, shape: tuple[int, ...]) -> Integers:
-    """Contiguous 32-bit integers of `shape`, from booleans or integers that fit."""
+    """`values`, booleans or integers that fit into 32 bits, as contiguous 32-bit integers of `shape`."""
     refuse_x_first(name, values)
     array = _plain(name, values, "iub", "integers or booleans")
     if array.shape != shape:
@@ -263,12 +264,12 @@ def integers(name: str, values: Any, shape: tuple[int, ...]) -> Integers:
 
 
 def constant(name: str, option: str, value: Any) -> int:
-    """The constant of a named option, by its name or its number."""
+    """The number of a constant of an option, from its name or its number."""
     return _constants.value_of(option, value) if isinstance(value, str) else integer(name, value)
 
 
 def pair(name: str, value: Any) -> Any:
-    """One value for both bodies, or two."""
+    """`value`, one number for both bodies or one for each, as a C array of two doubles."""
     if isinstance(value, float):
         return _PAIR(value, value)
     if type(value) is int:
@@ -283,11 +284,11 @@ def pair(name: str, value: Any) -> Any:
 
 
 _OPTIONS = {field[0]: field[1] for kind in (Options, Cycle) for field in kind._fields_ if field[0] in SolveOptions.__annotations__}
-# Options of the cycle of the paper's methods.
+# Options that are members of `contact_normal_cycle`: they describe the cycle of the multigrid methods.
 _CYCLE = frozenset(names(Cycle))
 
 
-# Arguments of `solve`, for suggestions if one is misspelt.
+# The arguments of `solve` that are no options: messages on a misspelt name suggest one of them.
 _SCENE = (
     "approach", "force", "mean_pressure", "shear_modulus", "poisson_ratio", "young_modulus", "e_star", "influence", "layer", "pressure_limit", "period",
     "patches", "row_tables", "coating", "friction", "adhesion", "visco", "pressure", "contact", "units", "progress",
@@ -295,19 +296,19 @@ _SCENE = (
 
 
 def _nearest(name: str) -> str:
-    """The argument or option that is probably meant."""
+    """A text that suggests the argument or option that is probably meant; "" if no name is similar."""
     near = difflib.get_close_matches(name, [*_SCENE, *_OPTIONS], 1)
     return f" (is {near[0]} meant?)" if near and near[0] != name else ""
 
 
 def options(given: Mapping[str, Any]) -> Any:
-    """The struct of options with the given ones set."""
+    """A `contact_normal_options` with the library's defaults and the given options."""
     struct = initialised("options")
     for name, value in given.items():
         if name not in _OPTIONS:
             raise TypeError(f"no argument and no option {name}{_nearest(name)}; options are: {', '.join(sorted(_OPTIONS))}")
         if name == "dump":
-            # The struct keeps the text to which it points.
+            # The attribute `path` of the Python object keeps alive the text to which the struct points.
             struct.path = None if value is None else os.fsencode(value)
             struct.dump = ctypes.cast(ctypes.c_char_p(struct.path), ctypes.c_void_p)
             continue

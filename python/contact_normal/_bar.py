@@ -18,17 +18,17 @@ def has_terminal() -> bool:
     """Whether stderr is a terminal. Windowed programs and services have no stderr."""
     try:
         return sys.stderr is not None and sys.stderr.isatty()
-    except Exception:  # of a host that has closed the stream in its place
+    except Exception:  # A host program may have replaced stderr by a stream that is closed, with errors of its own.
         return False
 
 
 class Bar:
-    """A progress bar: by tqdm if that is installed, otherwise on stderr."""
+    """A progress bar on stderr or in `file`, drawn by tqdm if that is installed."""
 
     WIDTH = 30
 
     def __init__(self, file: TextIO | None = None) -> None:
-        # Without a terminal, as in windowed programs and services, it is None, and nothing is drawn.
+        # In windowed programs and services sys.stderr is None, and nothing is drawn.
         self._file, self._began = file or sys.stderr, time.monotonic()
         self._tqdm: Any = None
         try:
@@ -38,11 +38,11 @@ class Bar:
         self._written(partial(self._begin, tqdm))
 
     def _begin(self, tqdm: Any) -> None:
-        # tqdm writes when it is made.
+        # The constructor of tqdm already writes, and so may fail.
         self._tqdm = tqdm(total=100, file=self._file, bar_format="{l_bar}{bar}| {elapsed}<{remaining}{postfix}")
 
     def draw(self, part: float, text: str) -> None:
-        """Draws the finished part, 0 to 1, and a text."""
+        """Draws the bar with the finished `part`, 0 to 1, and a text beside it."""
         if self._tqdm is not None:
             self._tqdm.n = round(100 * part)
             self._written(partial(self._tqdm.set_postfix_str, text))
@@ -56,26 +56,26 @@ class Bar:
         self._written(self._tqdm.close if self._tqdm is not None else partial(print, file=self._file))
 
     def _written(self, write: Callable[[], Any]) -> None:
-        """Calls `write`. A file that takes no more, as a closed pipe, a full disk or the stream of a host that is gone,
-        ends the bar and not the solve."""
+        """Calls `write`. If it fails, as on a closed pipe, a full disk or the stream of a host program that has ended, nothing more is drawn, and the solve
+        continues."""
         if self._file is not None:
             try:
                 write()
-            except Exception:  # Streams of hosts have errors of their own.
+            except Exception:  # Streams of host programs raise errors of their own.
                 self._file = None
 
 
 class SolveBar:
-    """A bar that shows the residual on its way to the tolerance, at most ten times a second. It never goes back.
+    """A bar for one solve: the finished part is log(residual)/log(tolerance). It is drawn at most ten times a second, and never goes back.
 
     Parameters
     ----------
     elements : int or None
-        Elements of the finest grid: cycles on coarser ones do not fill the bar. None: not known; each finer grid then gets half of the remaining bar.
+        Elements of the finest grid; cycles on coarser grids do not advance the bar. None: not known; each finer grid then gets half of the remaining bar.
     tolerance : float
         Tolerance of the residual.
     entries : int
-        Number of tangential problems. If there are some, the bar shows the finished ones.
+        Number of tangential problems, or 0. If there are some, the bar shows the part of them that is finished.
     """
 
     def __init__(self, elements: int | None, tolerance: float, entries: int = 0) -> None:
@@ -85,7 +85,7 @@ class SolveBar:
         self._finest, self._begin = 0, 0.0
 
     def tell(self, told: Progress) -> None:
-        """The progress callback."""
+        """Draws the progress that the callback of a solve gets."""
         self._part = max(self._part, self._part_of(told))
         self._text = f"{told.mx} x {told.my}, cycle {told.cycles}, residual {told.residual:.1e}"
         if time.monotonic() >= self._due:
@@ -94,7 +94,7 @@ class SolveBar:
 
     def _part_of(self, told: Progress) -> float:
         if self._entries:
-            # Cycles of the normal problem come first, and have a change of the pressures.
+            # The cycles of the normal problem come first. Only they change the pressures, so that their update is not 0.
             return min(1.0, told.cycles / self._entries) if told.update == 0.0 else 0.0
         share = 1.0
         if self._elements is None:
@@ -108,6 +108,6 @@ class SolveBar:
         return self._begin + share * min(1.0, math.log(told.residual) / math.log(self._tolerance))
 
     def close(self, is_done: bool) -> None:
-        """Draws the last progress, full if the call is done, and goes to the next line."""
+        """Draws the bar a last time, full if the call is done, and goes to the next line."""
         self._bar.draw(1.0 if is_done else self._part, self._text)
         self._bar.close()

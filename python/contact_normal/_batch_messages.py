@@ -1,4 +1,4 @@
-"""The message of each problem of a batch, from that of the whole call."""
+"""Splits the message of a batch into one message for each problem."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ._library import library
 
 
 class Warned:
-    """The warnings of all reports of a batch together."""
+    """Stands for the reports of a batch where one report is needed: its `warnings` are those of all reports together."""
 
     def __init__(self, reports: Any) -> None:
         self._reports = reports
@@ -24,7 +24,10 @@ class Warned:
 
 
 def messages_of(statuses: Any, told: str, warnings: Sequence[int]) -> list[str]:
-    """The message of each problem. Problems that are not OK have lines "problem 3: ..." in the text of the library. If all are OK, the text has warnings."""
+    """The message of each problem, from the message `told` of the whole call.
+
+    If some problems are not OK, the message has a line "problem 3: ..." for each of these. If all are OK, it is the text of all warnings.
+    """
     if all(status == OK for status in statuses):
         return [_part_of(told, functools.reduce(operator.or_, warnings, 0), one) for one in warnings]
     parts = re.split(r"^problem (\d+): ", told, flags=re.MULTILINE)
@@ -34,7 +37,7 @@ def messages_of(statuses: Any, told: str, warnings: Sequence[int]) -> list[str]:
 
 
 def _part_of(told: str, all_of: int, warnings: int) -> str:
-    """The text of some warnings, cut from the text of all of them, which has the order of their bits."""
+    """The text of the `warnings` of one problem, cut from the text of the warnings `all_of` a batch, which are separated by "; " in the order of their bits."""
     bits = [1 << k for k in range(all_of.bit_length()) if all_of >> k & 1]
     texts = told.split("; ", len(bits) - 1) if bits else []
     if len(texts) != len(bits):

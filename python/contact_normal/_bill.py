@@ -24,31 +24,31 @@ VERDICTS = ("not decided", "negligible", "needed")
 
 
 def omissions(bits: int) -> tuple[str, ...]:
-    """The names of the effects that a report says were left out."""
+    """The names of the effects that were left out: bit k - 1 of `bits`, the report's `neglected`, stands for the effect with the number k."""
     return tuple(name for number, name in OMISSIONS.items() if bits >> (number - 1) & 1)
 
 
 class BillRow(NamedTuple):
-    """The effect on a quantity of leaving out one effect, or two, and the savings.
+    """How much one quantity changes if one effect, or a pair of effects, is left out of a scene, and what this saves.
 
     Attributes
     ----------
     omitted : tuple of str
         The effects that are left out: "coating", "period", "patches", "layer", "pressure_limit", "friction", "coupling" (like bodies in the place of unlike
         ones), "spin", "friction_compliance", "coating_as_layer" (a thin layer in the place of the coating), "adhesion", "friction_law", "friction_layer",
-        "visco". Two names: both.
+        "visco". Two names: both effects are left out together.
     quantity : str
-        "force", ...
+        The name of the quantity: "force", ...; see `contact_normal.quantities`.
     verdict : str
         "negligible", "needed" or "not decided", relative to the target.
     value, change, error : float
-        The value with all effects, its change without the effect, and the error of the change (negative: not known); nan: there is none.
+        The value with all effects, its change without the effect, and the estimated error of this change (negative: not known). nan: there is no such number.
     seconds, seconds_without : float
-        Predicted seconds on the scene's own grid with one thread, with and without the effect.
+        Predicted seconds of a solve on the scene's grid with one thread, with and without the effect.
     bytes, bytes_without : float
-        Predicted memory, with and without the effect.
+        Predicted memory of a solve, with and without the effect.
     lack : str
-        The reason for which a number is not known; "": all are known.
+        The reason for which a number of this row is not known; "": all are known.
     """
 
     omitted: tuple[str, ...]
@@ -65,7 +65,7 @@ class BillRow(NamedTuple):
 
     @classmethod
     def of(cls, row: EffectsRow) -> BillRow:
-        """The row of a struct of the library."""
+        """Makes a row from a struct of the library."""
         omitted = tuple(name_of(OMISSIONS, number) for number in (row.omitted, row.also_omitted) if number)
         return cls(
             omitted, name_of(QUANTITY_NAMES, row.quantity), name_of(VERDICTS, row.verdict), row.value, row.change, row.change_error, row.seconds,
@@ -79,16 +79,16 @@ class BillRow(NamedTuple):
 
 
 class Bill(list[BillRow]):
-    """The rows of `what_matters`: for each effect, then for each pair, one row for each quantity.
+    """The rows of `what_matters`: one row for each quantity without each effect, then one for each quantity without each pair of effects.
 
     Attributes
     ----------
     target : float
-        The relative accuracy of the verdicts.
+        The relative accuracy for which the verdicts hold.
     estimated : str
-        The meaning of the quantity "force": "force", or "approach" if the force is prescribed.
+        What the quantity "force" is: "force", or "approach" if the force is prescribed.
     message : str
-        The reason for which rows are not solved, if `max_seconds` or `max_cycles` ended the call; otherwise "".
+        The reason for which some rows have no values, if `max_seconds` or `max_cycles` ended the call; otherwise "".
     """
 
     target: float
@@ -149,25 +149,26 @@ def what_matters(
     pairs: bool = True,
     **given: Unpack[SceneArguments],
 ) -> Bill:
-    """Says which effects a scene calls for: how much each quantity changes without an effect, and how much time that saves.
+    """Finds which effects a scene needs: how much each quantity changes without an effect, and how much time leaving out the effect saves.
 
-    The scene is solved on small grids, for at most 5 % of its own predicted seconds or 100 ms, or `max_seconds`.
+    The scene is solved with and without its effects on small grids. This takes at most 5 % of the predicted seconds of the scene, or 100 ms if that is more, or
+    `max_seconds` if it is given.
 
     Parameters
     ----------
     h, dx, dy, **given
-        As for `solve`, with effects and options, but without own coefficients.
+        As for `solve`, with effects and options, but without influence coefficients of the caller.
     target : float
         Wanted relative accuracy: smaller changes are negligible.
     quantities : sequence of str
-        See `contact_normal.quantities`.
+        The names of the quantities; see `contact_normal.quantities`.
     pairs : bool
-        Whether pairs of effects are also left out, because their changes do not add up.
+        Whether effects are also left out in pairs. The change without a pair is not the sum of the changes without each effect.
 
     Returns
     -------
     Bill
-        A list of `BillRow`, which prints as a table, and has `needed` and `negligible`.
+        A list of `BillRow`, which prints as a table. Its `needed` and `negligible` are the names of these effects.
 
     Raises
     ------
@@ -176,7 +177,7 @@ def what_matters(
 
     Examples
     --------
-    A layer that is a thousand times stiffer than the contact:
+    A layer whose compliance is negligible beside that of the contact:
 
     >>> import numpy as np, contact_normal
     >>> x = (np.arange(64) - 31.5) * 0.1

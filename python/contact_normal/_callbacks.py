@@ -1,6 +1,6 @@
-"""Python callables as callbacks of the C ABI, called on the thread that asked for the solve.
+"""Python callables as callbacks of the C ABI. They are called on the thread that asked for the solve.
 
-An exception in a callable cancels the call and is raised after it. A KeyboardInterrupt outside of callables is raised at once.
+An exception in a callable cancels the solve, and is raised when the library has returned. A KeyboardInterrupt outside of callables is raised at once.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ class Progress(NamedTuple):
     Attributes
     ----------
     mx, my : int
-        Elements of the grid of the cycle.
+        Elements in x and y of the grid of the cycle.
     cycles : int
-        Cycles on that grid so far.
+        Cycles on this grid so far.
     active_set_changes : int
         Elements that entered or left the contact area in the last cycle.
     seconds, work_units : float
-        Since the beginning of the solve; a work unit is a product with the matrix of the finest grid.
+        Time and work since the beginning of the solve. A work unit is one product A p on the finest grid.
     update : float
         The rms over the contact area of the last change of the pressures.
     residual : float
-        Relative residual over the contact area, as far as known.
+        Relative residual over the contact area, as far as known from the iteration.
     """
 
     mx: int
@@ -53,20 +53,20 @@ class Progress(NamedTuple):
 
 
 class Watched:
-    """The calls of a solve, with its progress callback: a callable, True for a bar, or nothing.
+    """Makes the call of a solve with a progress callback: a callable, a bar, or only a check whether the call was given up.
 
     Parameters
     ----------
     progress : callable, bool or None
         As for `solve`.
     options : Options
-        The struct that gets the callback.
+        The `contact_normal_options` of the call, which gets the callback.
     scene : Scene or None
-        The scene; None: its grids are not known beforehand.
+        The scene; None: the grids that will be solved are not known beforehand.
     entries : int
-        Number of tangential problems that are also solved.
+        Number of tangential problems that the call also solves.
     asks : bool
-        Whether the call has other callbacks.
+        Whether the call has callbacks besides that of progress.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class Watched:
 
     @staticmethod
     def _ends_soon(scene: Scene, options: Any, entries: int) -> bool:
-        # Searches of adhesion take more than `max_cycles`.
+        # The bound of `is_short` does not hold with adhesion, whose searches may take more than `max_cycles`.
         return not scene.struct.adhesion and is_short(scene.effort * (entries + 1), options.max_cycles)
 
     def _call(self, told: Any, _user: Any) -> int:
@@ -96,14 +96,14 @@ class Watched:
                 return 0
             progress = Progress(*(getattr(told.contents, name) for name in Progress._fields))
             return 1 if asked(lambda: self._told(progress)) else 0
-        except BaseException as error:  # it must not cross the C frames
+        except BaseException as error:  # No exception may pass through the frames of the library.
             self._error = error
             return 1
 
     def call(
         self, function: Callable[..., int], *arguments: Any, handle: Handle | None = None, keep: Any = None, report: Any = None
     ) -> tuple[int, str]:
-        """See `called`. Raises the exception of the callable, and closes the bar."""
+        """Calls a function of the library, as `called`. Afterwards it closes the bar, and raises the exception of the callable, if there was one."""
         status = -1
         try:
             status, message = called(function, *arguments, handle=handle, keep=(self, keep), short=self._is_short, report=report, asks=self._asks)
@@ -115,7 +115,7 @@ class Watched:
 
 
 class Surface:
-    """A callable h(x, y) of the coordinates of element centres as the surface callback."""
+    """The surface callback of the library from a callable h(x, y) of the coordinates of element centres."""
 
     def __init__(self, surface: Callable[[Any, Any], Any], corner: tuple[float, float]) -> None:
         self._surface, self._corner = surface, corner
@@ -134,12 +134,12 @@ class Surface:
             except ValueError:
                 raise ValueError(f"what h(x, y) returns has shape {values.shape}; it must be {(my, mx)}, or what numpy makes that of") from None
             return 0
-        except BaseException as error:  # it must not cross the C frames
+        except BaseException as error:  # No exception may pass through the frames of the library.
             self._error = error
             return 1
 
     def finish(self) -> None:
-        """Raises the exception of the callable."""
+        """Raises the exception of the callable, if there was one."""
         raise_of(self)
 
 
@@ -149,9 +149,9 @@ def set_log(callback: Callable[[int, str], Any] | None, level: int = LOG_INFO) -
     Parameters
     ----------
     callback : callable or None
-        Called as `callback(level, message)`; None: no messages, as at the beginning.
+        Called as `callback(level, message)`. None (the state at the beginning): the library sends no messages.
     level : int
-        `LOG_WARNING`: messages that need attention; `LOG_INFO`: also the decisions of the library.
+        `LOG_WARNING`: only messages that need attention; `LOG_INFO`: also the decisions of the library.
 
     Examples
     --------
@@ -167,7 +167,7 @@ def set_log(callback: Callable[[int, str], Any] | None, level: int = LOG_INFO) -
 
 
 def _logged(level: int, message: bytes, _user: Any) -> None:
-    # Another thread may replace the callable just before this call.
+    # A copy, because another thread may replace the callable meanwhile.
     callbacks = list(_log)
     try:
         if callbacks and not given_up():
@@ -177,8 +177,8 @@ def _logged(level: int, message: bytes, _user: Any) -> None:
             raise
 
 
-# The callable that receives messages, if there is one.
+# The callable that receives messages; empty if there is none.
 _log: list[Callable[[int, str], Any]] = []
-# The library may call it at any time: it is never freed, and after a reload of this module the earlier one remains.
+# The callback that the library calls. It may do so at any time, so the callback is never freed. `_KEPT` also holds those of this module before a reload.
 _LOGGED = LogCallback(_logged)
 _KEPT = [*globals().get("_KEPT", ()), _LOGGED]

@@ -1,8 +1,8 @@
-"""Calls of the library that a signal can end: another thread makes them, while the calling thread waits and runs their callbacks.
+"""Calls of the library that a signal can end: a worker thread makes the call, while the calling thread waits and runs the callbacks.
 
-Python runs the handlers of signals, and so raises KeyboardInterrupt, on its main thread, and only between two of its own instructions. During a call of the
-library they would wait until it returns, and an exception within a callback of ctypes would be lost. So the main thread calls through a worker. Other threads
-get no signals, and call the library themselves.
+Python runs the handlers of signals, and so raises KeyboardInterrupt, on its main thread, and only between two instructions of Python. During a call of the
+library a handler would wait until the call returns, and an exception within a callback of ctypes would be lost. So the main thread calls through a worker.
+Other threads get no signals, and call the library themselves.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-# The time for which an abandoned call is waited for: most calls end with their next cycle, within this time.
+# Seconds for which the main thread waits for a call that it has given up. Most calls end with their next cycle, within this time.
 _PATIENCE = 0.1
-# The longest time between two checks for signals.
+# The longest time between two checks for signals, in seconds.
 _LISTEN = 0.05
-# The largest number of elements times cycles of a solve that the main thread makes itself: the slowest, which do not converge, take .15 s on a busy machine. A
-# worker costs some 50 us a solve with its callbacks; a usual solve of this size takes 200.
+# The main thread makes a solve itself if its elements times its `max_cycles` are at most this number. The slowest such solves, which do not converge, take
+# 0.15 s on a busy machine. A worker with its callbacks costs some 50 us a solve, and a usual solve of this size takes 200 us.
 _SHORT = 1_050_000
 
 
@@ -42,9 +42,9 @@ class Call(Generic[T]):
     Attributes
     ----------
     given_up : bool
-        Whether no thread waits for the result: callbacks or `stop` end the call.
+        Whether no thread waits for the result any more. The next callback, or `stop`, then ends the call.
     stop : c_int32
-        1 once the call is given up, for `options.stop`.
+        The number to which `options.stop` points: 1 once the call is given up.
     """
 
     def __init__(self, work: Callable[[], T]) -> None:
@@ -59,7 +59,7 @@ class Call(Generic[T]):
         self._news, self._answered, self._ended = (threading.Lock() for _ in range(3))
         for lock in (self._news, self._answered, self._ended):
             lock.acquire()
-        # A worker acquires it when it begins. A thread that gives the call up acquires it if no worker has begun, and then none will.
+        # A worker acquires this lock when it begins the call. A thread that gives the call up before that acquires the lock, so that no worker begins it.
         self._begun = threading.Lock()
 
     def make(self) -> None:
@@ -71,11 +71,11 @@ class Call(Generic[T]):
             self._found.append(self._work())
         except BaseException as error:  # it is raised where the result is waited for
             self._error = error
-        # The work may hold a solver that was closed meanwhile: it is freed here.
+        # The work may hold a solver that was closed meanwhile. Forgetting the work here frees this solver.
         self._work = None
 
     def end(self) -> None:
-        """On the worker: tells the waiting thread that the result exists."""
+        """On the worker: tells the waiting thread that the call is over."""
         self._is_over = True
         _given_up.discard(self)
         self._ended.release()
@@ -86,7 +86,7 @@ class Call(Generic[T]):
             self._news.release()
 
     def ask(self, question: Callable[[], Any]) -> Any:
-        """On the worker: the result of `question()` on the waiting thread."""
+        """On the worker: lets the waiting thread compute `question()`, and returns the result or raises the exception."""
         self._question = question
         self._tell()
         self._answered.acquire()
@@ -99,7 +99,7 @@ class Call(Generic[T]):
         return answer
 
     def result(self, worker: _Worker) -> T:
-        """On the waiting thread: answers questions until the worker has the result. Any exception gives the call up."""
+        """On the waiting thread: gives the call to the worker, answers questions, and returns the result. Any exception gives the call up."""
         _waiting.add(self)
         try:
             worker.give(self)
@@ -126,7 +126,7 @@ class Call(Generic[T]):
         return self._found.pop()
 
     def orphan(self) -> None:
-        """In a forked process, whose worker does not exist: ends the call."""
+        """In a forked process, which does not have the worker: marks the call, so that the waiting thread raises instead of waiting."""
         self._is_orphan = True
 
     def _give_up(self) -> None:
@@ -167,7 +167,7 @@ class _Worker(threading.Thread):
 
     def run(self) -> None:
         """Makes the calls."""
-        # The worker adds itself to the idle ones, because a signal may interrupt the thread that started it.
+        # The worker adds itself to the idle ones. The thread that started the worker might be interrupted by a signal before it could do so.
         _idle.append(self)
         self._ready.release()
         while True:
@@ -184,7 +184,7 @@ class _Worker(threading.Thread):
 
 
 def _resting() -> _Worker | None:
-    """An idle worker."""
+    """Takes an idle worker; None if there is none."""
     try:
         return _idle.pop()
     except IndexError:
@@ -198,7 +198,7 @@ _here = threading.local()
 
 
 def raise_of(owner: Any) -> None:
-    """Raises the exception of a callback of the `owner`, and forgets it, because its traceback would keep the objects of the call."""
+    """Raises the exception that a callback stored in `owner._error`, and removes it there: its traceback would keep the objects of the call alive."""
     error, owner._error = owner._error, None
     if error is not None:
         try:
@@ -208,19 +208,19 @@ def raise_of(owner: Any) -> None:
 
 
 def here() -> Call[Any] | None:
-    """The call that this thread makes as a worker."""
+    """The call that this thread makes as a worker; None on other threads."""
     call: Call[Any] | None = getattr(_here, "call", None)
     return call
 
 
 def asked(question: Callable[[], T]) -> T:
-    """The result of `question()` on the thread that waits for this call."""
+    """Computes `question()` on the thread that waits for this call."""
     call = here()
     return question() if call is None else call.ask(question)
 
 
 def given_up() -> bool:
-    """Whether no thread waits for the call that this thread makes."""
+    """Whether the call that this thread makes is to end: no thread waits for it, or this is a daemon thread of a process that ends."""
     call = here()
     return _daemons.is_to_end() if call is None else call.given_up
 
@@ -231,12 +231,12 @@ def on_main_thread() -> bool:
 
 
 def is_short(elements: int, cycles: int) -> bool:
-    """Whether a solve is so short that no signal has to end it."""
+    """Whether a solve of so many elements and at most so many cycles is so short that no signal has to end it."""
     return 0 <= cycles * elements <= _SHORT
 
 
 def made(work: Callable[[], T], short: bool = False) -> T:
-    """The result of `work()`, which calls the library. On the main thread a signal ends it, unless it is short."""
+    """Returns `work()`, which calls the library. On the main thread a worker makes the call, so that a signal can end it, unless the call is short."""
     # No thread can begin or continue while the interpreter ends.
     if short or not on_main_thread() or sys.is_finalizing():
         return work()
@@ -252,10 +252,10 @@ def called(
     function: Callable[..., int], *arguments: Any, handle: Handle | None = None, keep: Any = None, short: bool = False, report: Any = None,
     options: Any = None, asks: bool = False,
 ) -> tuple[int, str]:
-    """The status of a function of the library, and its message: "" after OK, unless the call writes a `report` with warnings.
+    """Calls a function of the library, and returns its status and its message. The message is "" after OK, unless the call writes a `report` with warnings.
 
-    With a handle its address is the first argument. `keep` lives until the function returns. A call without callbacks names its `options`, whose `stop` ends it
-    when it is given up; one with callbacks sets `asks`.
+    The address of a `handle`, if there is one, is the first argument. The objects of `keep` live until the function returns. A call without callbacks passes
+    its `options`, whose `stop` ends the call when it is given up. A call with callbacks sets `asks`.
     """
     if handle is not None:
         handle.wait()
@@ -271,10 +271,10 @@ def _told(
     _, report, options = kept
     if options is not None and (call := here()) is not None:
         options.stop = pointer(call.stop)
-    # A thread that calls through a worker waits for its calls anyway.
+    # Without a worker, the end of the process must wait for a daemon thread with callbacks. A call by a worker has a thread that waits for it.
     with _daemons.within(asks and here() is None), _NO_HANDLE if handle is None else handle as first:
         status = int(function(*first, *arguments))
-        # The message belongs to the calling thread. After OK it may be that of an earlier call.
+        # The library keeps one message for each thread, so this thread reads it. After OK the message may be that of an earlier call.
         has_message = status or report is not None and report.warnings
         return status, last_error() if has_message else ""
 
@@ -287,7 +287,7 @@ def _end_workers() -> None:
 
 
 def _forget_workers() -> None:
-    """In a forked process: forgets the workers, which do not exist there; the forked thread makes no call there."""
+    """In a forked process: forgets the workers and their calls, which do not exist there."""
     _here.call = None
     _daemons.forget()
     for call in list(_given_up):
@@ -297,7 +297,7 @@ def _forget_workers() -> None:
 
 
 def _wait_for_given_up() -> None:
-    """At the end of the process: waits for calls of the library, which must not outlast the interpreter."""
+    """At the end of the process: waits for the calls that were given up, because a call of the library must not outlast the interpreter."""
     for call in list(_given_up):
         call.wait()
 

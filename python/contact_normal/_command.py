@@ -54,7 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     given = parser().parse_args(arguments)
     if isinstance(sys.stdout, io.TextIOWrapper):
-        # Characters that the terminal cannot show, as a micro sign, must not end a finished solve.
+        # A character that the terminal cannot show, as a micro sign, must not turn a finished solve into an error.
         sys.stdout.reconfigure(errors="replace")
     try:
         with warnings.catch_warnings():
@@ -64,7 +64,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             sys.stdout.flush()
         return code
     except BrokenPipeError:
-        # The reader, as `head`, has ended. Python would report this again at its end.
+        # The program that reads the output, as `head`, has ended. Without this line Python would report the error again when it closes stdout.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return READER_GONE
     except (ContactNormalError, ValueError, TypeError, OverflowError) as error:

@@ -24,10 +24,10 @@ def add(commands: Any) -> None:
 
 
 def program() -> str:
-    """The program beside the library, in `bin` beside its `lib`, or in PATH."""
+    """The path of contact-normal-replay: beside the library, in `bin` beside the library's folder, or in PATH."""
     library = Path(candidates()[0])
     folder = library.resolve().parent
-    # The loader finds a name without a folder.
+    # A library without a folder in its name is found by the system's loader; then its folder is not known.
     for place in (folder, folder.parent / "bin") if library.name != str(library) else ():
         found = shutil.which(PROGRAM, path=str(place))
         if found:
@@ -39,6 +39,6 @@ def program() -> str:
 
 
 def run(given: argparse.Namespace) -> int:
-    """Runs the program."""
+    """Runs the program on the dump, and returns its exit code."""
     code = subprocess.run([program(), given.file], check=False).returncode
     return code if code >= 0 else SIGNAL - code

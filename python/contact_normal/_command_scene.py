@@ -13,7 +13,7 @@ import numpy as np
 from .surface import Gap, Heights, faults, gap, level, read
 
 ELASTIC = ("young_modulus", "shear_modulus", "poisson_ratio", "e_star")
-# A usage with all options would hide the error message.
+# The usage that is printed with an error message. It is short, because a list of all options would hide the message.
 USAGE = "%(prog)s FILE [options]; %(prog)s --help lists them"
 LOADS = ("force", "approach", "mean_pressure")
 
@@ -58,13 +58,13 @@ def add_effects(command: argparse.ArgumentParser) -> None:
 
 
 def effects_of(given: argparse.Namespace, period: str | None) -> dict[str, Any]:
-    """Effects as the functions of the package take them, with the period of a gap."""
+    """The effects of the options, as arguments of `solve`. `period` is that of the gap."""
     coating = tuple(tuple(layer) if layer else None for layer in (given.coating_1, given.coating_2))
     return {"period": period, "pressure_limit": given.pressure_limit, "layer": given.layer, "coating": coating if any(coating) else None}
 
 
 def _period_of(found: Gap | Heights, given: argparse.Namespace) -> str | None:
-    """The period of the options, or that of the file."""
+    """The period that the options give, else that of the file, with a note on stderr."""
     if given.period is not None:
         return None if given.period == "none" else str(given.period)
     if found.period:
@@ -73,7 +73,7 @@ def _period_of(found: Gap | Heights, given: argparse.Namespace) -> str | None:
 
 
 def gap_of(given: argparse.Namespace) -> Gap:
-    """The undeformed distance of the options, with the period of the options or of the file."""
+    """Reads the file of the options, prepares its heights as the options say, and returns the gap."""
     if given.gap and Gap.is_in(given.file):
         for name in ("dx", "dy", "axes", "top_first", "variable", "hole", "faults", "level"):
             if getattr(given, name) not in (None, False):
@@ -84,7 +84,7 @@ def gap_of(given: argparse.Namespace) -> Gap:
         raise ValueError(f"{given.file} holds a gap, and not heights: add --gap")
     heights = _heights_of(given)
     period = _period_of(heights, given)
-    # A field that is one period of its surface is levelled first.
+    # `level` refuses a periodic surface. The measured field is therefore levelled without its period, which is set afterwards.
     heights = dataclasses.replace(heights, period=None)
     if given.faults:
         found_faults = faults(heights)
@@ -101,7 +101,7 @@ def gap_of(given: argparse.Namespace) -> Gap:
 
 
 def _heights_of(given: argparse.Namespace) -> Heights:
-    """The heights of the file, with the settings of the options."""
+    """The heights of the file. Options replace what the file says of sizes, units and order of the elements."""
     said: dict[str, Any] = {}
     if given.hole is not None:
         said["fill"] = given.hole
@@ -123,7 +123,7 @@ def _heights_of(given: argparse.Namespace) -> Heights:
         raise
     except (OSError, ImportError, ValueError):
         raise
-    except Exception as error:  # of the reader of another package
+    except Exception as error:  # The readers of other packages raise errors of their own.
         raise ValueError(f"{given.file}: {error}") from error
     if heights.units and not given.units:
         print(f"lengths in {heights.units[0]}, as {given.file} says: moduli and load must be in units that go with it", file=sys.stderr)
@@ -131,7 +131,7 @@ def _heights_of(given: argparse.Namespace) -> Heights:
 
 
 def scene_arguments(given: argparse.Namespace) -> dict[str, Any]:
-    """Bodies, load and options as the functions of the package take them."""
+    """The elastic constants, the load and the options of a solve, as arguments of `solve`."""
     found: dict[str, Any] = {name: getattr(given, name) for name in LOADS}
     for name in ELASTIC:
         value = getattr(given, name)

@@ -31,7 +31,7 @@ def add(commands: Any) -> None:
 
 
 def run(given: argparse.Namespace) -> int:
-    """Solves, prints and writes; 1 if the solve stopped early."""
+    """Solves the scene, prints the results and writes the files. Returns 1 if the solve stopped early, else 0."""
     plot = str(Path(given.file).with_suffix(".contact.png")) if given.plot == "" else given.plot
     for name, endings in (*((output, FIELDS) for output in given.output), *([(plot, PICTURES)] if plot else [])):
         if Path(name).suffix not in endings:
@@ -50,7 +50,7 @@ def run(given: argparse.Namespace) -> int:
 
 
 def told(result: Result) -> list[tuple[str, str]]:
-    """The names and values that are printed."""
+    """The lines that are printed, as pairs of a name and a text."""
     (my, mx), units, report = result.pressure.shape, result.units, result.report
     share = 100.0 * report["contact_count"] / (my * mx)
 
@@ -77,7 +77,7 @@ def told(result: Result) -> list[tuple[str, str]]:
 
 
 def _hints(given: argparse.Namespace, period: str | None, result: Result) -> list[tuple[str, str]]:
-    """Options that may help if one element carries most of the force, or if contact reaches the border."""
+    """Hints at options that may help if one element carries most of the force, or if the contact reaches the border of the grid."""
     if given.gap:
         return []
     few = {"ONE_ELEMENT", "SPIKE"} & set(result.warnings)

@@ -48,7 +48,7 @@ def axis(name: str, text: str) -> list[float]:
 
 
 def run(given: argparse.Namespace) -> int:
-    """Computes the table; 1 if an entry stopped early."""
+    """Computes the table, and prints or writes it. Returns 1 if an entry stopped early, else 0."""
     axes: dict[str, Any] = {name: axis(name, getattr(given, name)) for name in _DEFAULTS}
     if given.workers < 0:
         raise ValueError(f"--workers is {given.workers}; it must be 0, for one process a core, or more")

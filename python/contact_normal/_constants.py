@@ -54,7 +54,7 @@ NAMED_OPTIONS = ("method", "smoother", "active_set", "initial_guess", "criterion
 
 
 def value_of(option: str, name: str) -> int:
-    """The value of the constant `name` (in any case) of a named option."""
+    """The value of the constant `name`, in upper or lower case, of one of the `NAMED_OPTIONS`."""
     prefix = option.upper() + "_"
     names = {key[len(prefix) :]: value for key, value in globals().items() if key.startswith(prefix)}
     if option not in NAMED_OPTIONS or name.upper() not in names:

@@ -16,7 +16,7 @@ from ._creep_force_plane import AXES, Plan
 
 
 def key(plan: Plan) -> str:
-    """A key that equal plans share: of axes, elements, tolerance and surface."""
+    """A hash of the axes, elements, tolerance and surface of a plan, by which the files of equal plans are recognised."""
     axes = {name: getattr(plan, name) for name in (*AXES, "elements", "tolerance")}
     digest = hashlib.sha256(json.dumps(axes, sort_keys=True).encode())
     for grid in () if plan.surface is None else (plan.surface["fine"], plan.surface["coarse"]):
@@ -53,7 +53,7 @@ class Journal:
         return self._folder / f"{index:06d}.npz"
 
     def leave(self) -> None:
-        """Removes the folder of a table that was refused, if it has no plane."""
+        """Removes the folder if it has no plane. It is called if the library refuses the table."""
         if not any(self._folder.glob("[0-9]*.npz")):
             shutil.rmtree(self._folder, ignore_errors=True)
 
@@ -66,7 +66,7 @@ class Journal:
         return found
 
     def write(self, index: int, arrays: Mapping[str, Any]) -> None:
-        """Adds a plane."""
+        """Writes a finished plane into the folder."""
         file = self._file(index)
         unfinished = file.with_suffix(".unfinished")
         with open(unfinished, "wb") as out:
@@ -76,7 +76,7 @@ class Journal:
         os.replace(unfinished, file)
 
     def finish(self) -> None:
-        """Removes the folder, after the table is written."""
+        """Removes the folder. It is called after the whole table is written."""
         shutil.rmtree(self._folder)
 
 

@@ -1,5 +1,4 @@
-"""Computes tables of creep forces in this process, in several processes or on a cluster. Interrupted tables are
-continued."""
+"""Computes tables of creep forces: in this process, in several processes, or on a cluster. A call continues a table that was interrupted."""
 
 from __future__ import annotations
 
@@ -46,33 +45,35 @@ def creep_force_table(
 ) -> CreepForceTable:
     """Computes a table of creep forces in steady rolling: of Hertz ellipses, or of a surface.
 
-    For ellipses with semi-axes a in the rolling direction and b across, and for like bodies with shear modulus G, all values are relative, with c = sqrt(a b)::
+    For ellipses with semi-axes a in the rolling direction and b across, and for bodies with equal elastic constants and shear modulus G, all values are
+    dimensionless, with c = sqrt(a b)::
 
         xi  = (G c^2/(mu N)) times the longitudinal creepage        force_x = Fx/(mu N)
         eta = (G c^2/(mu N)) times the lateral creepage             force_y = Fy/(mu N)
         phi = (G c^3/(mu N)) times the spin                         moment  = Mz/(mu N c)
 
-    so that they depend on a/b and the Poisson ratio only. Kalker's linear theory is then force_x = -C11 xi, force_y = -C22 eta - C23 phi, moment = C23 eta -
-    C33 phi. For a surface creepages, spin, forces and moments have the units of the input.
+    Forces and moment then depend on xi, eta, phi, a/b and the Poisson ratio only. Kalker's linear theory is force_x = -C11 xi, force_y = -C22 eta - C23 phi,
+    moment = C23 eta - C33 phi. For a surface creepages, spin, forces and moments have the units of the input.
 
-    Symmetry gives the other entries. For ellipses xi and phi are >= 0: (-xi, eta, phi) has (-force_x, force_y, moment),
-    and (xi, -eta, -phi) has (force_x, -force_y, -moment). For a surface of like bodies phi >= 0 is enough: (-xi, -eta,
-    -phi) has (-force_x, -force_y, -moment).
+    Symmetry gives the entries of other signs. For ellipses xi and phi must be >= 0: (-xi, eta, phi) has (-force_x, force_y, moment), and (xi, -eta, -phi) has
+    (force_x, -force_y, -moment). For a surface of bodies with equal elastic constants phi >= 0 is enough: (-xi, -eta, -phi) has (-force_x, -force_y, -moment).
 
-    `error` is the sum of three parts, relative to mu N. The first is the change of the entry to infinitely fine
-    elements. It is extrapolated from a grid of elements twice as large, because forces converge with first order. The
-    second is 1/8 of the largest such change of the same ellipse. It covers the next order, where the first part passes
-    through 0. The third is the residual.
+    `error` is the sum of three parts, relative to mu N:
+
+    1. The estimated change of the entry from this grid to infinitely fine elements. It is extrapolated from a grid of elements twice as large, because forces
+       converge with first order.
+    2. 1/8 of the largest such change of the same ellipse. It covers errors of the next order where the first part happens to be near 0.
+    3. The residual.
 
     Parameters
     ----------
     path : path, optional
-        A NetCDF file. Until it is complete, its parts are in the folder `<path>.parts`: the same call continues from them, and reads the file if it exists.
-        Needs xarray and netCDF4 (`pip install 'contact-normal[tables]'`). None: no file is written.
+        A NetCDF file for the table. Until the table is complete, its parts are in the folder `<path>.parts`, from which the same call continues. If the file
+        exists, it is read. Needs xarray and netCDF4 (`pip install 'contact-normal[tables]'`). None: no file is written.
     xi, eta, phi : array_like
-        Increasing axes of the table.
+        The values along the axes of creepages and spin, increasing.
     axis_ratio, poisson_ratio : array_like
-        Increasing a/b, and Poisson ratios; not for a surface.
+        The values of a/b and of the Poisson ratio, increasing; not for a surface.
     surface : mapping, optional
         "h" (my, mx), "dx", "dy", "force" or "approach", "shear_modulus", "poisson_ratio" as for `solve`, and "coefficient" of friction;
         also "rolling_direction", "spin_centre" and "spin_offset".
@@ -85,7 +86,8 @@ def creep_force_table(
     client : distributed.Client, optional
         A Dask cluster that computes instead of processes on this machine.
     progress : callable or bool, optional
-        Called as progress(finished entries, all entries). An exception in it ends the call, and finished parts remain. True: draws a bar on stderr.
+        A callable gets the number of finished entries and that of all entries. An exception in it ends the call, and finished parts remain. True draws a bar on
+        stderr.
 
     Returns
     -------
@@ -130,7 +132,7 @@ def creep_force_table(
 
 
 def _plan(xi: Any, eta: Any, phi: Any, axis_ratio: Any, poisson_ratio: Any, surface: Any, elements: int, tolerance: float) -> Plan:
-    """The plan of a table, after a check."""
+    """Checks the arguments of `creep_force_table`, and returns the plan of the table."""
     axes: dict[str, tuple[float, ...]] = {}
     if surface is not None:
         axis_ratio, poisson_ratio = 1.0, 0.0
@@ -156,7 +158,7 @@ def _workers(given: int) -> int:
 
 
 def _planes(plan: Plan, journal: store.Journal | None, workers: int, client: Any, progress: Any) -> dict[int, Any]:
-    """All planes, earlier and new ones."""
+    """All planes by their index: those that the journal has, and the missing ones, which are computed."""
     done = journal.done() if journal else {}
     missing = [index for index in range(plan.planes) if index not in done]
     each = len(plan.eta) * len(plan.xi)
@@ -180,11 +182,11 @@ def _planes(plan: Plan, journal: store.Journal | None, workers: int, client: Any
 
 
 def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iterator[tuple[int, Any]]:
-    """The missing planes, in the order in which they are finished."""
+    """Computes the missing planes, and yields them with their index in the order in which they are finished."""
     if client is None and workers == 1:
         yield from ((index, plane(plan, index)) for index in missing)
         return
-    # There is no lock, because a process that was killed might have held it.
+    # A flag in shared memory by which this process ends its workers. It has no lock, because a process that was killed might hold it.
     stop = multiprocessing.RawValue("b", 0) if client is None else None
     if client is not None:
         executor = client.get_executor()
@@ -196,14 +198,14 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
         jobs.update((executor.submit(_at_work if client is None else plane, plan, index), index) for index in missing)
 
     try:
-        # A worker calls it, because a signal that interrupts an executor leaves it half started.
+        # `made` lets another thread submit the jobs: a signal that interrupts an executor leaves it half started.
         made(submit)
         done = concurrent.futures.as_completed(jobs)
         while (job := made(partial(next, done, None))) is not None:
             yield jobs[job], job.result()
         stop = None
     finally:
-        # The unfinished jobs are not needed any more.
+        # If the loop was left early, the unfinished jobs are not needed any more.
         if stop is not None:
             stop.value = 1
         else:
@@ -212,12 +214,13 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
         made(partial(executor.shutdown, wait=client is None))
 
 
-# A worker releases it while it computes. A worker that ends while it sends a result would leave the other side waiting for the rest.
+# A lock that a worker process holds except while it computes. If the parent sets `stop`, the worker ends only where this lock is free, and so not while it
+# sends a result: the other side would wait for the rest.
 _sending = threading.Lock()
 
 
 def _at_work(plan: Plan, index: int) -> Any:
-    """`plane` in a worker, which may be ended meanwhile."""
+    """Computes `plane` in a worker process, which may be ended meanwhile."""
     _sending.release()
     try:
         return plane(plan, index)
@@ -226,9 +229,9 @@ def _at_work(plan: Plan, index: int) -> Any:
 
 
 def _leave_with_parent(stop: Any) -> None:
-    """Ends this process soon after its parent was killed or has set `stop`. Otherwise it would wait for work for ever.
+    """Starts a thread that ends this worker process soon after its parent was killed or has set `stop`. Otherwise the worker would wait for work for ever.
 
-    Signals of the terminal are the parent's: it stops its processes.
+    The worker ignores the interrupt signal of the terminal, because the parent gets it too, and stops its workers.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
@@ -239,12 +242,12 @@ def _leave_with_parent(stop: Any) -> None:
 
     _sending.acquire()
 
-    # With a fork server, the parent is the server. It ends with the process that asks for the work.
+    # With a fork server the parent of this process is the server, which ends with the process that started it.
     threading.Thread(target=watch, args=(os.getppid(),), daemon=True).start()
 
 
 def _assembled(plan: Plan, planes: Mapping[int, Mapping[str, Any]]) -> CreepForceTable:
-    """The table of all planes, with the errors."""
+    """Joins the planes to a table, and computes its estimated errors."""
     values = {name: np.stack([planes[index][name] for index in range(plan.planes)]).reshape(plan.shape) for name in planes[0]}
     difference = values.pop("difference")
     largest = np.nanmax(np.where(np.isnan(difference), 0.0, difference), axis=(2, 3, 4), keepdims=True)
@@ -258,6 +261,6 @@ def _assembled(plan: Plan, planes: Mapping[int, Mapping[str, Any]]) -> CreepForc
 
 
 def _are_alike(grid: Mapping[str, Any]) -> bool:
-    """Whether the bodies are alike. Then pressures cause no tangential displacements."""
+    """Whether (1 - 2 nu)/G is the same for both bodies. Then pressures cause no relative tangential displacements."""
     shear, poisson = (np.broadcast_to(np.asarray(grid[name], dtype=float), (2,)) for name in ("shear_modulus", "poisson_ratio"))
     return bool((1.0 - 2.0 * poisson[0]) / shear[0] == (1.0 - 2.0 * poisson[1]) / shear[1])

@@ -22,22 +22,22 @@ VALUES = ("force_x", "force_y", "moment", "error", "residual", "products", "stat
 
 
 class CreepForceTable:
-    """Forces and spin moments over creepages and spin, with an estimate of the error of each.
+    """A table of tangential forces and spin moments by creepages and spin, with an estimated error of each entry.
 
     Attributes
     ----------
     axis_ratio, poisson_ratio, phi, eta, xi : ndarray
-        The axes. For a surface the first two have one value without a meaning.
+        The values along the axes. For a surface axis_ratio and poisson_ratio have one value without a meaning.
     force_x, force_y, moment : ndarray, (axis_ratio, poisson_ratio, phi, eta, xi)
-        For ellipses relative to mu N and to mu N c; for a surface in the caller's units.
+        Forces and moment. For ellipses they are relative to mu N and to mu N c; for a surface they are in the caller's units.
     error : ndarray, of that shape
         Estimated error of the forces relative to mu N, and of the moment relative to mu N times the radius of the contact area.
     residual, products : ndarray, of that shape
-        The residual of the tractions of each entry, and its products, each of two components.
+        The residual of the tractions of each entry, and the number of products that it took. A product is that of the tangential problem, of two components.
     status : ndarray of int, of that shape
         0 (OK), or another status of `friction_batch`. Entries with a status < 0 are NaN.
     of_surface : bool
-        Whether it is the table of a surface.
+        Whether the table is that of a surface, and not of ellipses.
     elements : int
         Elements along each side of the grid; 0 for a surface.
     """
@@ -54,7 +54,7 @@ class CreepForceTable:
         return f"<CreepForceTable: {shape} entries, largest error {np.nanmax(self.error):.2g}>"
 
     def to_xarray(self) -> Any:
-        """The table as an `xarray.Dataset` with the names of the attributes."""
+        """Returns the table as an `xarray.Dataset` with the names of the attributes."""
         dataset = netcdf.xarray(in_files=False).Dataset(
             {name: (AXES, getattr(self, name)) for name in VALUES}, {name: getattr(self, name) for name in AXES},
             {"elements": self.elements, "tolerance": self.tolerance, "of_surface": int(self.of_surface),
@@ -70,7 +70,7 @@ class CreepForceTable:
 
     @staticmethod
     def read(path: str | os.PathLike[str]) -> CreepForceTable:
-        """A table that `write` or `creep_force_table` has written."""
+        """Reads a table that `write` or `creep_force_table` has written."""
         dataset = netcdf.read(path)
         if not set(VALUES) <= set(dataset.data_vars):
             raise ValueError(f"{path} is no table of creep forces")
@@ -81,19 +81,19 @@ class CreepForceTable:
 
     def forces(self, xi: npt.ArrayLike, eta: npt.ArrayLike, phi: npt.ArrayLike, *, axis_ratio: npt.ArrayLike = 1.0,
                poisson_ratio: npt.ArrayLike | None = None, hold: bool = False) -> tuple[Doubles, Doubles, Doubles, Doubles]:
-        """Forces, moment and error between the entries, linear in each axis (in the logarithm of the axis ratio).
+        """Interpolates forces, moment and error between the entries: linearly along each axis, along axis_ratio in its logarithm.
 
-        Symmetries extend the table. If xi, eta and phi change their signs, so do forces and moment. For ellipses, if eta and phi alone change
+        Symmetries extend the table to other signs. If xi, eta and phi change their signs, so do forces and moment. For ellipses, if eta and phi alone change
         their signs, so do force_y and moment. So (-xi, eta, phi) has (-force_x, force_y, moment).
 
         Parameters
         ----------
         xi, eta, phi : array_like
-            In the units of the table; arrays are broadcast.
+            Creepages and spin in the units of the table. Arrays are broadcast.
         axis_ratio, poisson_ratio : array_like
-            For ellipses only. The Poisson ratio may be left out if the table has one only.
+            For ellipses only. The Poisson ratio may be left out if the table has only one.
         hold : bool
-            Beyond the ends of an axis: the value at its end, and NaN where a value is NaN. Otherwise both are errors.
+            True: arguments beyond the end of an axis are replaced by that end, and the results are NaN where an argument is NaN. False: both raise an error.
 
         Returns
         -------
@@ -115,7 +115,7 @@ class CreepForceTable:
         ratio, nu, spin, lateral, longitudinal = (np.array(value) for value in given)
         sign, mirror = np.ones(spin.shape), np.ones(spin.shape)
         if not self.of_surface:
-            # All signs first, so that xi >= 0; then those of eta and phi.
+            # `sign` changes all signs so that xi >= 0. `mirror` then changes those of eta and phi so that phi >= 0.
             sign = np.where(longitudinal < 0, -1.0, 1.0)
             mirror = np.where(sign * spin < 0, -1.0, 1.0)
             across = sign * mirror * lateral
@@ -134,7 +134,7 @@ class CreepForceTable:
 
     def plot(self, of: str = "force_x", *, eta: float = 0.0, axis_ratio: float = 1.0, poisson_ratio: float | None = None,
              axes: Axes | None = None) -> Axes:
-        """Draws creep curves: a force over the longitudinal creepage, one curve for each spin, with the estimated errors as bands.
+        """Draws creep curves: a force or the moment over the longitudinal creepage, one curve for each spin, with the estimated errors as bands.
 
         Parameters
         ----------
@@ -150,16 +150,16 @@ class CreepForceTable:
         return plot_creep_forces(self, of, eta, axis_ratio, poisson_ratio, axes)
 
     def _is_straight(self, spin: Doubles) -> npt.NDArray[np.bool_]:
-        """Whether the table is read at spin 0. Then spin does not determine the signs, and those are chosen for which the table has entries."""
+        """Where the table is read at spin 0. There the spin does not determine the signs, and those are chosen for which the table has entries."""
         return np.asarray(np.clip(np.abs(spin), self.phi[0], self.phi[-1]) == 0.0)
 
     def _beyond(self, name: str, places: Doubles) -> Doubles:
-        """How far places are outside an axis."""
+        """How far values are beyond the ends of an axis; 0 inside."""
         axis = getattr(self, name)
         return np.asarray(np.maximum(np.maximum(axis[0] - places, places - axis[-1]), 0.0))
 
     def _between(self, name: str, values: Doubles, hold: bool) -> tuple[npt.NDArray[np.int64], Doubles]:
-        """The entry of an axis before each value, and the part of the way to the next one."""
+        """For each value the index of the entry of an axis before it, and the part of the way, 0 to 1, from this entry to the next one."""
         axis = getattr(self, name)
         if len(axis) == 1 and not hold and not np.allclose(values, axis[0], rtol=1e-12, atol=0.0):
             raise ValueError(f"{name} has values outside the table, which has {axis[0]} only")
@@ -177,16 +177,18 @@ class CreepForceTable:
     def wheel_rail(self, creepage: tuple[npt.ArrayLike, npt.ArrayLike], spin: npt.ArrayLike, *, semi_axes: tuple[float, float],
                    normal_force: float, coefficient: float, shear_modulus: float, poisson_ratio: float | None = None,
                    hold: bool = False) -> tuple[Doubles, Doubles, Doubles]:
-        """Forces in x and y and the spin moment of an ellipse, in the caller's units.
+        """Computes forces in x and y and the spin moment of an elliptic contact, in the caller's units.
 
         Parameters
         ----------
         creepage, spin
-            The creepage without a unit; the spin in one over a length.
+            The creepages in x and y, without a unit; the spin, one over a length.
         semi_axes : (float, float)
-            In the direction of rolling, and across; positive where there is a load.
-        normal_force, coefficient, shear_modulus, poisson_ratio, hold
-            Of the contact; bodies are alike. Without a load or friction all forces are 0.
+            The semi-axes in the direction of rolling and across it; positive where there is a load.
+        normal_force, coefficient, shear_modulus, poisson_ratio
+            Of the contact; both bodies have the same elastic constants. Without a load or without friction all forces are 0.
+        hold
+            As for `forces`.
 
         Returns
         -------
@@ -205,7 +207,7 @@ class CreepForceTable:
         bound = np.asarray(mu * load)
         if np.any((bound > 0.0) & (_is_no_length(a) | _is_no_length(b))):
             raise ValueError(f"semi_axes is {semi_axes}; they must be positive and finite where there is a load")
-        # Without a load, any lengths will do.
+        # Without a load the semi-axes have no effect: they are set to 1.
         a, b = (np.where(_is_no_length(one) | (bound == 0.0), 1.0, one) for one in (a, b))
         c = np.sqrt(a * b)
         if not bound.any():
@@ -215,7 +217,7 @@ class CreepForceTable:
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             unit = modulus * c * c / np.where(bound > 0.0, bound, np.inf)
             empty = (bound == 0.0) | np.isinf(unit)
-            # Without a load, the first entry of the table takes the place of any other.
+            # Without a load the forces are set to 0 below. Until then the first entry of the table takes the place of the arguments.
             axes = ((self.xi, along), (self.eta, across), (self.phi, c * real("spin", spin)))
             xi, eta, phi = (np.where(empty, axis[0], unit * value) for axis, value in axes)
             ratio = np.where(empty, self.axis_ratio[0], a / b)
@@ -231,13 +233,13 @@ def _is_no_length(values: Doubles) -> npt.NDArray[np.bool_]:
 
 
 def _interpolated(values: Doubles, corners: Sequence[tuple[Any, Any]]) -> Doubles:
-    """Sums over the corners of each cell that have a weight."""
+    """Interpolates linearly: sums the values at the corners of each cell times their weights."""
     total: Doubles = np.zeros(corners[0][0].shape)
     for corner in np.ndindex(*(2,) * len(corners)):
         weight, index = np.ones(total.shape), []
         for (before, part), size, after in zip(corners, values.shape, corner):
             weight = weight * (part if after else 1.0 - part)
             index.append(np.minimum(before + after, size - 1))
-        # An entry that is NaN does not count without a weight.
+        # An entry that is NaN has no effect where its weight is 0.
         total += np.where(weight > 0, weight * values[tuple(index)], 0.0)
     return total

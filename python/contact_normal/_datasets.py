@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ._solved import Solved
     from ._stress import SubsurfaceStress
 
-# The description of each field, and the kind of its unit.
+# For each field its description, and the kind of its unit ("": it has none).
 _FIELDS = {
     "pressure": ("pressure", "pressure"),
     "deformed_distance": ("deformed distance", "length"),

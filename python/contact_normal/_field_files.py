@@ -1,4 +1,4 @@
-"""Writes a result into a file in the format of its ending."""
+"""Writes the fields of a result, or a picture, into a file in the format that its ending names."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NAMES = ("pressure", "deformed_distance", "displacement", "contact")
 
 
 def write_fields(path: str | Path, result: Result) -> None:
-    """Writes the fields of a result as NetCDF (.nc), .npz, or for ParaView (.vtk, .vtu).
+    """Writes the fields of a result as NetCDF (.nc), as an archive of numpy (.npz), or for ParaView (.vtk, .vtu).
 
     Raises
     ------
@@ -44,23 +44,23 @@ def write_fields(path: str | Path, result: Result) -> None:
 
 
 def refuse_unless_writable(path: str | Path, surface: str | Path | None = None) -> None:
-    """Refuses a file that cannot be written, before a long solve.
+    """Raises an error if an output file cannot be written. It is called before a long solve.
 
     Parameters
     ----------
     path : str or path
-        The file.
+        The output file.
     surface : str or path, optional
-        The file of the surface, which must be another one.
+        The file of the surface, which the output must not overwrite.
 
     Raises
     ------
     OSError
-        If its folder does not exist or is not writable.
+        If the folder of the output does not exist or is not writable.
     ImportError
-        If its format needs a package that is not installed; the message names it.
+        If the format of the output needs a package that is not installed; the message names it.
     ValueError
-        If it is the file of the surface.
+        If the output is the file of the surface.
     """
     path = Path(path)
     if surface is not None and path.exists() and Path(surface).exists() and path.samefile(surface):
@@ -99,7 +99,7 @@ def _write_mesh(path: Path, result: Result) -> None:
 
 
 def save(path: str | Path, plot: Callable[[], Any]) -> None:
-    """Saves the picture of `plot`, in the style of this package."""
+    """Saves the picture that `plot()` draws, in the style of this package."""
     from ._style import matplotlib_style
 
     with matplotlib_style():

@@ -30,14 +30,18 @@ _KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "inf
 
 
 def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[Any, list[Any], Remarks]:
-    """A `contact_normal_friction`, the arrays that it points to, and remarks for the caller; `length` is half of the longer side of the grid."""
+    """A `contact_normal_friction` from the mapping of a caller, the arrays to which it points, and remarks for the caller.
+
+    `length` is half of the longer side of the grid; it converts a spin to a creepage in the remarks.
+    """
     if not isinstance(value, Mapping):
         raise TypeError(f"friction is {value!r}; it must be a mapping of {', '.join(_KNOWN)}")
     unknown = [str(name) for name in value if name not in _KNOWN]
     if unknown:
         raise ValueError(f"friction has {', '.join(sorted(unknown))}; it may have {', '.join(_KNOWN)}")
     given = {name: one for name, one in value.items() if one is not None}
-    # The set-up of a Solver may read tables only. A layer limits tractions in addition to the coefficient, not instead of it.
+    # Only the set-up of a Solver may have friction without a coefficient: its influence tables. A plastic layer also needs the coefficient, because it limits
+    # tractions in addition to mu p.
     if "coefficient" not in given and not (_OF_SET_UP & set(given) and set(given) <= _OF_SET_UP | {"motion", "compliance", *_OF_A_STEP}):
         raise ValueError("friction has no coefficient; without friction leave it out, or give a coefficient of 0")
     effect = initialised("friction")
@@ -80,7 +84,7 @@ def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[A
 
 
 def _without_unknown(creepage: tuple[Any, Any], forces: tuple[Any, Any]) -> tuple[Any, Any]:
-    """Creepages with 0 instead of None, which means that the force is given."""
+    """The creepages with 0 in the place of None. None is refused in a direction whose force is not given."""
     for k, one in enumerate(creepage):
         if one is None and forces[k] is None:
             raise ValueError(f"friction['creepage'][{k}] and friction['force'][{k}] are None; give one of them")
@@ -89,7 +93,7 @@ def _without_unknown(creepage: tuple[Any, Any], forces: tuple[Any, Any]) -> tupl
 
 
 def _one_or_each(effect: Any, name: str, value: Any, shape: tuple[int, int]) -> list[Any]:
-    """One number, or one per element: then the name of the member ends in s."""
+    """Sets a member of the struct to one number, or the member whose name ends in s to an array with one number per element; returns the arrays."""
     if np.ndim(value) == 0:
         setattr(effect, name, number(f"friction['{name}']", value))
         return []
@@ -99,7 +103,7 @@ def _one_or_each(effect: Any, name: str, value: Any, shape: tuple[int, int]) -> 
 
 
 def _known(what: str, value: Any, names: tuple[str, ...]) -> dict[str, Any]:
-    """The entries of a mapping with these names; others are refused."""
+    """The entries of a mapping that are not None. Entries with other names than these are refused."""
     if not isinstance(value, Mapping):
         raise TypeError(f"{what} is {value!r}; it must be a mapping of {', '.join(names)}")
     unknown = [str(name) for name in value if name not in names]
@@ -137,7 +141,7 @@ def _layer(effect: Any, value: Any) -> None:
 
 
 def _influence(effect: Any, given: Mapping[str, Any]) -> list[Any]:
-    """Sets own coefficients."""
+    """Sets the caller's tangential influence coefficients, and returns the objects that must live as long as the struct."""
     if "influence" not in given:
         if "influence_cross" in given:
             raise ValueError("friction['influence_cross'] is given without friction['influence']")
@@ -159,7 +163,7 @@ def _influence(effect: Any, given: Mapping[str, Any]) -> list[Any]:
 
 
 def _three(name: str, tables: Any) -> Any:
-    """Three tables, with or without a scale."""
+    """Returns the tables (xx, yy, xy) or (xx, yy, xy, scale); refuses any other number of entries."""
     count = len(tables) if isinstance(tables, (tuple, list)) or np.ndim(tables) else 0
     if not count:
         raise TypeError(f"friction['{name}'] is {tables!r}; it must be (xx, yy, xy) or (xx, yy, xy, scale)")
@@ -169,7 +173,7 @@ def _three(name: str, tables: Any) -> Any:
 
 
 def _row_tables(effect: Any, given: Mapping[str, Any]) -> list[Any]:
-    """Sets own coefficients that differ per loaded row."""
+    """Sets the caller's tangential coefficients for each loaded row, and returns the objects that must live as long as the struct."""
     tables = given.get("row_tables")
     if tables is None:
         return []

@@ -1,4 +1,4 @@
-"""Many tangential problems of one scene: tables of tangential forces."""
+"""Solves many tangential problems of one scene, one for each entry of a table of creepages or forces."""
 
 from __future__ import annotations
 
@@ -28,32 +28,32 @@ if TYPE_CHECKING:
 
 
 class FrictionBatch(WithUnits):
-    """The results of `friction_batch`: the values of each entry, and fields if they are wanted.
+    """The results of `friction_batch`: forces, moment and creepages of each entry, and its fields if they are wanted.
 
     Attributes
     ----------
     status : ndarray of int, (n,)
-        Status of each entry: 0 solved; > 0 stopped early, or `CANCELLED`: not solved; < 0 refused. The values of entries that are not solved are NaN.
+        Status of each entry: 0: solved; > 0: stopped early (`CANCELLED`: not solved); < 0: refused. The values of entries that are not solved are NaN.
     message : str
-        A line "entry 3: ..." for each entry that is not solved, then warnings, and remarks on values that may be in a wrong unit.
+        A line "entry 3: ..." for each entry that is not solved, then warnings, then remarks on values that may be in a wrong unit.
     force, creepage : ndarray, (n, 2)
-        The tangential forces on body 1, and the creepages, given or computed.
+        The tangential forces on body 1, and the creepages; one of them is prescribed in each direction, and the other one computed.
     moment : ndarray, (n,)
-        The moment about the centre of spin.
+        The moment of the tractions about the centre of spin.
     residual, gap, products : ndarray, (n,)
-        As `tangential_residual`, `tangential_gap` and `tangential_products` of a report.
+        The residual, the gap and the number of products of each entry, as `tangential_residual`, `tangential_gap` and `tangential_products` of a report.
     stick_count, slip_count : ndarray of int, (n,)
         Numbers of elements that stick and that slip.
     traction, slip : ndarray, (n, 2, my, mx), or None
-        Tractions and slips, with `fields=True`.
+        With `fields=True`: tractions on body 1 and slips, in x and y.
     stick_slip : ndarray of int, (n, my, mx), or None
         With `fields=True`: 0 exterior, 1 stick, 2 slip, 3 slip in a plastic layer.
     friction_coefficient, yield_limit : ndarray, (n, my, mx), or None
         With `fields=True`: the state of the particles of the interface, with a law of friction or a plastic layer; otherwise zeros.
     report : dict
-        Report of the normal problem.
+        The report of the normal problem, as `Result.report`.
     units : (str, str) or None
-        Names of the units of lengths and forces. May be set.
+        Names of the units of lengths and forces. The caller may set them.
     """
 
     traction: npt.NDArray[np.float64] | None = None
@@ -88,7 +88,7 @@ class FrictionBatch(WithUnits):
         return plot_creep_curve(self, over, axes)
 
     def _results(self) -> Any:
-        """The struct that points to these arrays."""
+        """A `contact_normal_friction_results` that points to the arrays of this object."""
         results = initialised("friction_results")
         kinds = {"stick_count": c_int64, "slip_count": c_int64, "status": c_int32, "stick_slip": c_int32}
         for name in names(type(results))[1:]:
@@ -124,8 +124,8 @@ def friction_batch(
 ) -> FrictionBatch:
     """Solves many tangential problems of one scene: each entry has its own creepages (or forces) and spin.
 
-    The normal problem is solved once, or not at all if pressures are given. `threads` entries are solved at a time. Neighbours in the list should have similar
-    motions, because an entry that differs little from the one before starts from its tractions.
+    The normal problem is solved once, or not at all if pressures are given. With n threads n entries are solved at a time. Neighbours in the list should have
+    similar motions, because an entry that differs little from the one before starts from the tractions of that entry.
 
     Parameters
     ----------
@@ -136,19 +136,19 @@ def friction_batch(
     entries : array_like, (n, 3)
         For each entry the prescribed values in x and in y, and the spin.
     friction : mapping
-        As for `solve`. Its creepages, forces and spin are not used. In a direction whose "force" is not None, entries are forces. Creepages are lengths, and
-        spins angles, if "motion" is "SHIFT", the default.
+        As for `solve`, but the values of "creepage", "force" and "spin" are not used. In a direction whose "force" is not None, the entries are forces. If
+        "motion" is "SHIFT", the default, creepages are lengths and spins are angles.
     approach, force, mean_pressure : float
         Exactly one of them, unless there is a `pressure`.
     pressure : array_like, (my, mx), optional
         The pressures of a normal problem that is already solved.
     fields : bool
-        Whether tractions and slip are wanted.
+        Whether the arrays of tractions, slips and stick and slip areas of each entry are wanted.
     progress : callable or bool, optional
-        Called with a `Progress` about once for each entry, whose `cycles` is the number of finished entries; a true result cancels. True: draws a bar on
-        stderr.
+        A callable gets a `Progress` about once for each entry, whose `cycles` is the number of finished entries, and cancels the call if it returns a true
+        value. True draws a bar on stderr.
     shear_modulus, poisson_ratio, young_modulus, influence, layer, pressure_limit, coating, adhesion, units, **given
-        As for `solve`. With `influence` friction also needs its own coefficients.
+        As for `solve`. With `influence` the entry "influence" of `friction` is needed, too.
 
     Returns
     -------
@@ -157,7 +157,7 @@ def friction_batch(
     Raises
     ------
     ContactNormalError
-        If the call itself is refused; a refused entry has a negative `status`.
+        If the whole call is refused. If only an entry is refused, its `status` is negative.
     """
     struct, units = options(given), checked(units)
     scene, pressures = with_pressures(
@@ -173,7 +173,7 @@ def table_of(
     scene: Scene, pressures: Doubles | None, entries: Any, struct: Any, progress: Callable[[Progress], Any] | bool | None, fields: bool,
     handle: Handle | None, units: Any = None,
 ) -> FrictionBatch:
-    """Solves a table of entries, with or without a handle."""
+    """Solves the tangential problems of a table of entries, with the handle of a solver or without."""
     table = doubles("entries", entries, dimensions="(n, 3)")
     if table.shape[1] != 3:
         raise ValueError(f"entries has shape {table.shape}; it must be (n, 3)")

@@ -13,9 +13,9 @@ from ._constants import MOTION_SHIFT, PRESCRIBED_TANGENTIAL_FORCE
 if TYPE_CHECKING:
     from ._arguments import Doubles
 
-# Most wheels have smaller creepages.
+# A larger creepage is remarked on: most wheels have smaller ones.
 _LARGE = 0.05
-# Surfaces have smaller coefficients of friction.
+# A larger coefficient of friction is remarked on: surfaces have smaller ones.
 _STICKY = 5.0
 _IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
 
@@ -27,11 +27,11 @@ class Remarks:
     Attributes
     ----------
     effect : Friction
-        The struct.
+        The `contact_normal_friction` of the scene.
     has_motion : bool
-        Whether the motion is given.
+        Whether the caller gave the motion.
     coefficient : float
-        The largest coefficient.
+        The largest coefficient of friction of an element.
     length : float
         Half of the longer side of the grid.
     """
@@ -42,11 +42,11 @@ class Remarks:
     length: float
 
     def of_one(self) -> str:
-        """Lines about the motion that the effect has."""
+        """Remarks on the creepages and the spin of the effect itself, one line each."""
         return self._lines([abs(one) for one in self.effect.creepage], abs(self.effect.spin))
 
     def of_entries(self, entries: Doubles) -> str:
-        """Remarks on the motions of a table. They replace the motion of the effect."""
+        """Remarks on the entries of a table, one line each. The creepages and spins of the entries replace those of the effect."""
         if not len(entries):
             return self._lines([0.0, 0.0], 0.0)
         *given, spin = np.abs(np.where(np.isfinite(entries), entries, 0.0)).max(axis=0).tolist()

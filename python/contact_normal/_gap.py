@@ -1,4 +1,4 @@
-"""A gap: the undeformed distance of two surfaces on a grid, with the data that a solve, a picture or a program in C or Fortran needs."""
+"""The class `Gap`: the undeformed distance of two surfaces on a grid, and what a solve, a picture or a program in C or Fortran needs of it."""
 
 from __future__ import annotations
 
@@ -20,13 +20,15 @@ if TYPE_CHECKING:
     from ._arguments import Doubles
     from ._result import Result
 
-# The first text of each file of a gap.
+# The first line of each file that `Gap.write` writes.
 _HEAD = "# Undeformed distance on a grid, made by contact-normal"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Gap(Short):
-    """The undeformed distance of two surfaces on a grid of rectangular elements; its x and y are the centres of columns and rows.
+    """The undeformed distance of two surfaces on a grid of rectangular elements.
+
+    The properties x and y are the coordinates of the centres of columns and rows.
 
     Attributes
     ----------
@@ -53,12 +55,12 @@ class Gap(Short):
 
     @property
     def x(self) -> Doubles:
-        """Centres of the columns."""
+        """Coordinates of the centres of the columns, (mx,)."""
         return centres(self.h.shape[1], self.dx, self.middle[0])
 
     @property
     def y(self) -> Doubles:
-        """Centres of the rows."""
+        """Coordinates of the centres of the rows, (my,)."""
         return centres(self.h.shape[0], self.dy, self.middle[1])
 
     @property
@@ -67,8 +69,11 @@ class Gap(Short):
         return float(self.h.size * self.dx * self.dy)
 
     def solve(self, **scene: Any) -> Result:
-        """Presses the two surfaces together: `contact_normal.solve` for this gap. The arguments are a load, elastic constants, effects and options. Places of
-        the result are in the coordinates of the surfaces; those of arguments, as `spin_centre`, are relative to the middle of the grid."""
+        """Presses the two surfaces together: calls `contact_normal.solve` for this gap.
+
+        The arguments are a load, elastic constants, effects and options. Coordinates in the result are those of the surfaces. Coordinates in arguments, as
+        `spin_centre`, are relative to the middle of the grid.
+        """
         from ._solve import solve
 
         result = solve(self.h, self.dx, self.dy, **{"period": self.period, "units": self.units, **scene})
@@ -76,10 +81,10 @@ class Gap(Short):
         return result
 
     def write(self, path: str | os.PathLike[str], comment: str = "") -> None:
-        """Writes the gap as text, which the examples `gap.c` and `gap.f90` read.
+        """Writes the gap as a text file, which the examples `gap.c` and `gap.f90` read.
 
-        The file has two lines that begin with "#", then `mx my dx dy`, then one undeformed distance per line, x fastest; "inf": no surface. The second line has
-        the period, if there is one, and the comment. The middle and the units are not in the file.
+        The file has two lines that begin with "#", then a line `mx my dx dy`, then one undeformed distance per line, x fastest; "inf": no surface there. The
+        second line has the period, if there is one, and the comment. The middle and the units are not in the file.
         """
         if "\n" in comment or "\r" in comment:
             raise ValueError("comment has several lines; it must be one")
@@ -96,7 +101,7 @@ class Gap(Short):
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Gap:
-        """The gap of a file that was written by `write`."""
+        """Reads the gap from a file that was written by `write`."""
         lines = Path(path).read_text(encoding="utf-8").rstrip("\n").split("\n")
         if len(lines) < 3 or lines[0] != _HEAD:
             raise ValueError(f"{path} does not begin with {_HEAD!r}: it is no file of a gap")
@@ -117,7 +122,7 @@ class Gap(Short):
         return cls(h.reshape(my, mx), dx, dy, period=period[1] if period else None)
 
     def plot(self, axes: Axes | None = None, largest: float | None = None) -> Axes:
-        """Draws the undeformed distance, up to `largest` if it is given. Elements without a surface are white."""
+        """Draws the undeformed distance. If `largest` is given, the colours end at this distance. Elements without a surface are white."""
         from ._plot_surfaces import plot_gap
 
         return plot_gap(self, axes, largest)

@@ -1,4 +1,4 @@
-"""Splits keyword arguments of `solve` into a scene and options."""
+"""Splits the keyword arguments of `solve` into a scene and options."""
 
 from __future__ import annotations
 
@@ -38,16 +38,16 @@ class SceneArguments(SolveOptions, total=False):
 
 
 def effects_in(given: dict[str, Any]) -> dict[str, Any]:
-    """Takes the effects out of `given`."""
+    """Removes the arguments of effects from `given`, and returns them."""
     return {name: given.pop(name) for name in EFFECTS if name in given}
 
 
 def scene_and_options(h: Any, dx: Any, dy: Any, given: Mapping[str, Any]) -> tuple[Scene, Any]:
-    """The scene, and a `contact_normal_options`."""
+    """The scene and the `contact_normal_options` of the arguments of `solve`."""
     rest = dict(given)
     checked(rest.pop("units", None))
     effects = effects_in(rest)
     loads = {name: rest.pop(name, None) for name in _LOADS}
-    # This is done before the scene, so that a misspelt load is refused as an unknown option, not as a missing load.
+    # The options are checked before the scene, so that a misspelt load is refused as an unknown option, not as a missing load.
     struct = options(rest)
     return Scene(h, dx, dy, effects=effects, **loads), struct

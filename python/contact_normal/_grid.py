@@ -1,4 +1,4 @@
-"""The places of elements."""
+"""The coordinates of elements."""
 
 from __future__ import annotations
 
@@ -11,5 +11,5 @@ if TYPE_CHECKING:
 
 
 def centres(m: int, d: float, middle: float = 0.0) -> Doubles:
-    """The centres of m elements of size d in a row, around the middle."""
+    """The coordinates of the centres of m elements of size d in a row, whose middle is at `middle`."""
     return np.asarray((np.arange(m) + 0.5 - 0.5 * m) * d + middle, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""The library's handle of a solver, which is freed after it is closed and no call uses it."""
+"""The class `Handle`: the library's handle of a solver, which is freed once it is closed and no call uses it."""
 
 from __future__ import annotations
 
@@ -18,12 +18,13 @@ if TYPE_CHECKING:
 class Handle:
     """The address of a solver of the library.
 
-    A call uses it until it returns, also if the call is given up. If it is closed meanwhile, it is freed then. A handle without references is freed, too.
+    A call uses the solver until the call returns, even if nobody waits for the call any more. If the handle is closed meanwhile, the solver is freed when the
+    call returns. The solver of a handle without references is freed, too.
     """
 
     def __init__(self) -> None:
         self._address = c_void_p()
-        # The same thread may acquire it twice, because freeing objects within it may close a solver.
+        # A lock that the same thread may acquire twice: while it holds the lock, Python may free an object that closes a solver.
         self._lock = threading.RLock()
         self._users = 0
         self._is_closed = False
@@ -31,11 +32,11 @@ class Handle:
         self._free: Callable[[], Any] | None = None
 
     def set_up(self, create: Callable[[Any], int]) -> int:
-        """Calls `create` with the place for the address; returns its status."""
+        """Calls `create`, which sets up a solver and writes its address where the argument points. Returns the status."""
         status = create(byref(self._address))
         if self._address:
             free = weakref.finalize(self, library.contact_normal_solver_free, self._address)
-            # The end of the process frees the handle anyway.
+            # At the end of the process the system frees the memory of the solver anyway.
             free.atexit = False
             self._free = free
         return status
@@ -44,7 +45,7 @@ class Handle:
         return bool(self._address)
 
     def __enter__(self) -> tuple[c_void_p]:
-        """The address, as first argument of a call of the library."""
+        """Begins a call of the library, and returns the address as a tuple: the first argument of the call."""
         with self._lock:
             if self._is_closed:
                 raise ValueError("this solver is closed")
@@ -58,20 +59,20 @@ class Handle:
             self._free_if_unused()
 
     def wait(self) -> None:
-        """Waits for a call that was given up and has not returned."""
+        """Waits until a call that was given up has returned, because only one call at a time may use the solver."""
         call = self._call
         if call is not None and call.given_up:
             call.wait()
 
     def close(self) -> None:
-        """Frees the handle, at once or when the call that uses it returns."""
+        """Frees the solver: at once, or when the call that uses it returns."""
         with self._lock:
             self._is_closed = True
             self._free_if_unused()
 
     @property
     def _as_parameter_(self) -> c_void_p:
-        # ctypes passes this instead of the handle.
+        # ctypes passes this attribute in the place of a handle.
         return self._address
 
     @property

@@ -25,13 +25,13 @@ class FlashTemperature(NamedTuple):
     Attributes
     ----------
     rise : array, (2, my, mx)
-        The rise of body 1 and of body 2.
+        The temperature rise of the surface of body 1 and of body 2.
     share : float
-        The part of the heat that goes into body 1.
+        The part of the heat that goes into body 1, 0 to 1.
     largest : (float, float)
-        The largest rise of each body.
+        The largest temperature rise of each body.
     at : ((float, float), (float, float))
-        The place (x, y) of the largest rise of each body, relative to the middle of the grid.
+        The coordinates (x, y) of the largest rise of each body, relative to the middle of the grid.
     """
 
     rise: npt.NDArray[np.float64]
@@ -44,7 +44,7 @@ class FlashTemperature(NamedTuple):
 
 
 def _both(name: str, value: Any) -> Any:
-    """Two numbers, from one or two values."""
+    """A C array of two numbers, from one number for both bodies or one for each."""
     values = (value, value) if np.ndim(value) == 0 else tuple(value)
     if len(values) != 2:
         raise ValueError(f"{name} has {len(values)} values; it must be one number, or one of each body")
@@ -71,14 +71,15 @@ def flash_temperature(
     dx, dy : float
         Element sizes.
     conductivity, diffusivity : float or pair
-        lambda (power per length and temperature) and kappa = lambda/(density times heat capacity), for both bodies or for each.
+        The thermal conductivity lambda, a power per length and temperature, and the diffusivity kappa = lambda/(density times heat capacity), an area per time;
+        for both bodies or for each.
     speed : float or pair
         The velocity in +x of each surface relative to the contact; 0: the surface does not move. For bodies that roll towards +x at V both are -V.
     share : float, optional
-        The part of the heat that goes into body 1. By default both bodies have the same largest temperature (Blok 1937); one half if no heat makes one of both
-        warmer.
+        The part of the heat that goes into body 1. By default it is chosen so that both bodies have the same largest temperature (Blok 1937); it is one half if
+        the heat makes no body warmer.
     threads : int
-        1: one thread, 0: all cores.
+        Number of threads; 0: all cores.
 
     Returns
     -------

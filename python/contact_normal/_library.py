@@ -1,4 +1,4 @@
-"""Finds and loads the library, and checks that it suits this package."""
+"""Finds and loads the shared library, and checks that its version suits this package."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ from ._structs import (
 # The version of this package.
 PACKAGE = (VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH)
 
-# Result and arguments of every export.
+# The result type and the argument types of every exported function.
 PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "status_text": (c_char_p, [c_int32]),
     "last_error": (c_char_p, []),
@@ -125,10 +125,11 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
 
 
 def candidates() -> list[str]:
-    """The libraries that are tried; the first one that exists is loaded.
+    """The paths at which the library is looked for, the best one first. `load` takes the first.
 
-    If the environment variable CONTACT_NORMAL_LIBRARY is set, this is the only one. Otherwise they are the one inside this package (a wheel), the one built
-    in this clone, those in `lib` (Windows: `bin`) of this Python's prefix and of the package's own prefix, and the system's.
+    If the environment variable CONTACT_NORMAL_LIBRARY is set, its value is the only path. Otherwise these are, as far as they exist: the library inside this
+    package (a wheel); the one that cargo builds in this clone; those in `lib` (Windows: `bin`) of this Python's prefix and of the package's own prefix. If none
+    of them exists, the name that the system finds is returned.
     """
     named = os.environ.get("CONTACT_NORMAL_LIBRARY")
     if named:
@@ -136,17 +137,17 @@ def candidates() -> list[str]:
     here = Path(__file__).resolve().parent
     prefixes = [Path(sys.prefix), *list(here.parents)[2:5]]
     found = [str(path) for path in places(here, prefixes, sys.platform) if path.exists()]
-    # This uses programs of the system, as gcc.
+    # `find_library` is the last resort because it calls programs of the system, as gcc.
     return found or [ctypes.util.find_library("contact_normal") or names(sys.platform).installed]
 
 
 def load() -> ctypes.CDLL:
-    """Loads the library, and sets its prototypes.
+    """Loads the library, and sets the types of its functions.
 
     Raises
     ------
     ImportError
-        If there is none, or if it does not suit this package.
+        If there is no library, or if its version does not suit this package.
     """
     path = candidates()[0]
     try:
@@ -159,7 +160,7 @@ def load() -> ctypes.CDLL:
     version = library.contact_normal_abi_version()
     if version < ABI_VERSION:
         raise ImportError(f"{path} has ABI version {version}; this package needs {ABI_VERSION} or newer")
-    # The structs may have grown within one version of the ABI.
+    # The same ABI version is not enough: within one version of the ABI a newer package may have larger structs.
     library.contact_normal_version.restype = c_char_p
     text = library.contact_normal_version().decode()
     if tuple(int(part) for part in re.findall(r"\d+", text)[:3]) < PACKAGE:
@@ -182,17 +183,17 @@ _INITIALISED: dict[str, Any] = {}
 
 
 def initialised(name: str) -> Any:
-    """A struct with the library's defaults."""
+    """A new struct of the kind `name` of `KINDS`, with the library's defaults."""
     number, kind = KINDS[name]
     if name not in _INITIALISED:
         struct = kind()
         library.contact_normal_init(number, ctypes.byref(struct), ctypes.sizeof(kind))
-        # The struct is complete here, because another thread may read it at any time.
+        # The struct is stored only when it is complete, because another thread may read it at any time.
         _INITIALISED[name] = struct
     return kind.from_buffer_copy(_INITIALISED[name])
 
 
-# An element (ix, iy) of a message.
+# How a message of the library writes an element: (ix, iy).
 _ELEMENT = re.compile(r"element \((\d+), (\d+)\)")
 
 
@@ -213,19 +214,19 @@ class ContactNormalError(Exception):
         self.status, self.message = status, message
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Exceptions are unpickled from their text, but this one has two arguments.
+        # By default an exception is unpickled from its text alone, but this class has two arguments.
         return type(self), (self.status, self.message), self.__dict__
 
 
 def last_error() -> str:
-    """The message of the last call on this thread with another status than OK, or with a warning."""
-    # In the library x is the first index, in arrays of Python the last one. A replacement text with groups would import a module, which fails at the end of the
-    # interpreter.
+    """The message of the last call on this thread that returned another status than OK, or a warning."""
+    # The library writes an element as (ix, iy), but arrays of Python have the indices [iy, ix]. The replacement is a function, because a replacement text with
+    # groups would import a module, which fails at the end of the interpreter.
     return _ELEMENT.sub(lambda found: f"element [{found[2]}, {found[1]}]", library.contact_normal_last_error().decode())
 
 
 def check(status: int, message: str | None = None) -> int:
-    """The status, if it is not negative; raises ContactNormalError otherwise, with the message of the last call if none is given."""
+    """Returns a status that is not negative. For a negative one it raises ContactNormalError with `message`, by default that of the last call."""
     if status < 0:
         raise ContactNormalError(status, last_error() if message is None else message)
     return status

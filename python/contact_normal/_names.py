@@ -1,4 +1,4 @@
-"""The file names of the library on each platform, and their places in an installation."""
+"""The file names of the shared library on each platform, and the folders where it may be."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ class Names(NamedTuple):
     built: str
     """The file that cargo builds, and that a wheel contains."""
     installed: str
-    """The file that a linked program loads: its name changes when the ABI breaks."""
+    """The file that a linked program loads. Its name has the version of the ABI, where the platform has such names."""
     folders: tuple[str, ...]
-    """The folders of the file in an installation, below the prefix."""
+    """The folders below an installation's prefix that may have the file."""
 
 
 def names(platform: str) -> Names:
-    """The names on `platform`, a value of `sys.platform`."""
+    """The names of the library on `platform`, a value of `sys.platform`."""
     if platform in ("win32", "cygwin"):
-        # DLLs stand beside the programs; conda has them in Library.
+        # On Windows DLLs are in the folder of the programs; those of conda are in Library/bin.
         return Names("contact_normal.dll", "contact_normal.dll", ("bin", "Library/bin"))
     if platform == "darwin":
         return Names("libcontact_normal.dylib", "libcontact_normal.2.dylib", ("lib",))
@@ -28,8 +28,8 @@ def names(platform: str) -> Names:
 
 
 def places(package: Path, prefixes: list[Path], platform: str) -> list[Path]:
-    """Where the library may be, the best place first: in the package's folder (a wheel), in the clone that has this folder, in an
-    installation below one of the prefixes.
+    """The paths where the library may be, the best one first: in the folder of the package (a wheel), in the clone of the repository that has this folder, in
+    an installation below one of the prefixes.
     """
     name = names(platform)
     installed = [prefix / folder / name.installed for prefix in prefixes for folder in name.folders]

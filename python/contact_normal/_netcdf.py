@@ -1,4 +1,4 @@
-"""Datasets of xarray, and NetCDF files. Both packages are imported only here: `pip install 'contact-normal[tables]'`."""
+"""Reads and writes NetCDF files by xarray and netCDF4, which are imported only here: `pip install 'contact-normal[tables]'`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ._library import VERSION
 
 
 def xarray(in_files: bool = True) -> Any:
-    """The module xarray. `in_files`: netCDF4 must be there too, by which xarray writes files."""
+    """Imports and returns xarray. With `in_files` it also requires netCDF4, by which xarray reads and writes files."""
     try:
         if in_files:
             importlib.import_module("netCDF4")
@@ -22,9 +22,9 @@ def xarray(in_files: bool = True) -> Any:
 
 
 def write(path: str | os.PathLike[str], dataset: Any) -> None:
-    """Writes NetCDF, whole or not at all."""
+    """Writes a dataset as a NetCDF file, whole or not at all."""
     xarray()
-    # Links stay. Devices and pipes are refused: os.replace would replace them.
+    # A symbolic link is resolved, so that the link stays. Devices and pipes are refused, because os.replace would replace them by a file.
     target = Path(path).resolve()
     if target.exists() and not target.is_file():
         raise FileExistsError(f"{target} is no file")
@@ -37,6 +37,6 @@ def write(path: str | os.PathLike[str], dataset: Any) -> None:
 
 
 def read(path: str | os.PathLike[str]) -> Any:
-    """The dataset of a file, in memory."""
+    """Reads the whole dataset of a file into memory."""
     with xarray().open_dataset(path, engine="netcdf4") as dataset:
         return dataset.load()

@@ -1,4 +1,4 @@
-"""Names of numbered constants of the library."""
+"""Converts numbers of the library, as those of quantities, to the names of their constants."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from . import _constants
 
 
 def names_of(prefix: str) -> dict[int, str]:
-    """The names in lower case of the constants with a prefix, by number."""
+    """For each number the name, in lower case and without the prefix, of the constant that has this prefix and this value."""
     return {value: name[len(prefix):].lower() for name, value in vars(_constants).items() if name.startswith(prefix)}
 
 
 def name_of(names: Sequence[str] | Mapping[int, str], number: int) -> str:
-    """The name of a number, or "number 9" if a newer library has a number without a name here."""
+    """The name of a number. If a newer library returns a number that has no name in this package, the text is "number 9"."""
     try:
         return names[number] if number >= 0 else f"number {number}"
     except LookupError:

@@ -1,17 +1,18 @@
-"""Divides many pieces of work into parts, between which signals are handled."""
+"""Divides a call for many problems into several calls, so that signals can be handled between them."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator
 
-# Seconds that one part takes.
+# The time that one part should take, in seconds.
 _PART = 0.2
 
 
 def parts(count: int, first: int) -> Iterator[slice]:
-    """Divides `count` pieces of work into parts, between which signals are handled. Each part takes some tenths of a second, by the time of the one before.
+    """Yields slices that divide `count` problems into parts. The caller solves each part before it asks for the next one.
 
+    The first part has `first` problems. The size of the next ones is chosen by the time that the one before took, so that each takes some tenths of a second.
     There is at least one part, which may be empty.
     """
     begin, size = 0, first

@@ -1,4 +1,4 @@
-"""Pictures of the surface in a view from above."""
+"""Pictures of a result in a view from above: pressures, tractions."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from ._solved import Solved
 
 STICK, SLIP = (0.78, 0.87, 0.96), (0.99, 0.85, 0.74)
-# Outlines with more segments are drawn as pixels in vector files.
+# An outline of more segments than this is drawn as pixels in vector files, which would become too large.
 _SEGMENTS = 4000
-# If this percentile of the pressures is less than half of the largest, colours end at it.
+# If this percentile of the pressures is less than half of the largest pressure, the colours end at the percentile.
 _USUAL = 99.5
-# Negative pressures below this part of the largest count as 0, as do forces below this part of others.
+# Negative pressures smaller than this part of the largest pressure are round-off and count as 0. The same holds for forces beside larger ones.
 _ROUND_OFF = 1e-12
 
 
@@ -47,14 +47,14 @@ def plot_pressure(result: Result, axes: Axes | None) -> Axes:
 
 
 def _coloured(result: Result) -> tuple[Any, dict[str, Any]]:
-    """The values that `plot_pressure` draws, and their colours."""
+    """The values that `plot_pressure` draws, and the arguments of imshow for their colours."""
     largest = float(np.abs(result.pressure).max(initial=0.0))
     if result.pressure.min(initial=0.0) >= -_ROUND_OFF * largest:
         colours = {"cmap": "viridis", "vmin": 0.0}
         usual = float(np.percentile(result.pressure[result.contact], _USUAL)) if result.contact.any() else 0.0
-        # Rough surfaces have a few peaks, with which all other pressures would be dark.
+        # On rough surfaces a few pressures are much larger than the others, which would all be dark if the colours reached the largest one.
         return np.ma.masked_where(~result.contact, result.pressure), {**colours, "vmax": usual} if 0.0 < usual < 0.5 * largest else colours
-    # With adhesion there is tension outside the contact area as well: both signs have their own colours, and white is 0.
+    # With adhesion there is tension, also outside the contact area: red is pressure, blue is tension, white is 0.
     return result.pressure, {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
 
 
@@ -73,7 +73,7 @@ def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     _arrows(result, axes)
     _outline(axes, result.stick_slip > 0, x_edges, y_edges)
     _outline(axes, result.stick_slip == 1, x_edges, y_edges)
-    # A force component that is round-off relative to the other one is 0.
+    # A component of the force that is round-off beside the other one is shown as 0.
     size = float(np.hypot(*result.tangential_force))
     fx, fy = (part if abs(part) > _ROUND_OFF * size else 0.0 for part in result.tangential_force)
     name_axes(axes, result.units)
@@ -83,7 +83,10 @@ def plot_traction(result: Solved, axes: Axes | None) -> Axes:
 
 
 def _arrows(result: Solved, axes: Axes) -> None:
-    """Some twenty arrows across the contact area, the longest somewhat longer than their distance, and a key of round length."""
+    """Draws arrows of the tractions, about twenty across the contact area, and a key.
+
+    The longest arrow is 1.3 times as long as the distance of the arrows. The key has 1, 2 or 5 times a power of ten.
+    """
     rows, columns = np.nonzero(result.stick_slip > 0)
     across = max(np.ptp(rows), np.ptp(columns)) + 1 if rows.size else 1
     step = -(-int(across) // 20)
@@ -95,14 +98,14 @@ def _arrows(result: Solved, axes: Axes) -> None:
     scale = largest / (1.3 * step * min(result.dx, result.dy))
     arrows = axes.quiver(result.x[ix], result.y[iy], qx, qy, angles="xy", scale_units="xy", scale=scale, pivot="mid", width=0.004)
     unit = 10.0 ** np.floor(np.log10(largest))
-    # Just below a power of ten the logarithm may be rounded up to it.
+    # Just below a power of ten the logarithm may be rounded up to that of the power, so that no part fits: then the key has the power.
     shown = unit * max((part for part in (1.0, 2.0, 5.0) if part * unit <= largest), default=1.0)
     axes.quiverkey(arrows, 0.98, 0.04, shown, title(f"{shown:g}", "pressure", result.units), labelpos="W", coordinates="axes",
                    color=axes.xaxis.label.get_color())
 
 
 def _outline(axes: Axes, contact: npt.NDArray[np.bool_], x_edges: Any, y_edges: Any) -> None:
-    """The border of the contact area along the edges of its elements; thin for small elements, so that it does not cover them."""
+    """Draws the border of the contact area along the edges of its elements. The line is thin where elements are small, so that it does not cover them."""
     from matplotlib.collections import LineCollection
 
     padded = np.pad(contact, 1)

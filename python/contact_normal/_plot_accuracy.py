@@ -1,4 +1,4 @@
-"""Pictures of the costs of accuracy and effects, by matplotlib."""
+"""Pictures of the costs of accuracy and of effects, by matplotlib."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from ._quantities import Quantities
 
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
-# Changes below this part of the target are not drawn.
+# The axis of changes begins at this part of the target, if there are smaller changes.
 _LEAST = 1e-4
-# Over more decades than this only powers of ten have labels.
+# If the axis of time covers more decades than this, only powers of ten have labels.
 _DECADES = 2.0
 
 
@@ -29,7 +29,7 @@ def _error_axes(axes: Axes) -> None:
     axes.set(xscale="log", yscale="log", xlabel="time [s]", ylabel="relative error")
     first, last = axes.get_xlim()
     if last < 10.0**_DECADES * first:
-        # With few powers of ten there is room for labels between them, but not for all nine.
+        # Between a few powers of ten there is room for labels at some multiples, but not at all nine.
         between = (1.0, 2.0, 5.0) if last > 10.0 * first else (1.0, 2.0, 3.0, 5.0, 7.0)
         powers = 10.0 ** np.arange(np.floor(np.log10(first)), np.ceil(np.log10(last)))
         axes.xaxis.set_major_locator(FixedLocator(np.outer(powers, between).ravel().tolist()))
@@ -88,7 +88,7 @@ def plot_ledger(ledger: Sequence[dict[str, float]], estimated: str, axes: Axes |
 
 
 def _write_elements(axes: Axes, grids: list[tuple[float, tuple[int, int]]]) -> None:
-    """Writes the elements of each grid along the upper border, the finest ones first; labels that would overlap are left out."""
+    """Writes the numbers of elements of each grid along the upper border, from the right to the left. Labels that would overlap the last one are left out."""
     if not grids:
         return
     places = sorted(dict((shape, (seconds, shape)) for seconds, shape in grids).values(), reverse=True)

@@ -1,4 +1,4 @@
-"""Pictures with curves: sections, pressures by their size, area against load, creep forces."""
+"""Pictures with curves: sections, histograms of pressures, contact area over load, creep forces."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from ._result import Result
     from ._solved import Solved
 
-# Pressures that differ by the first part are equal, as a solve has them to its tolerance. A histogram of equal ones
-# shows the second part around them.
+# Pressures that differ by less than the relative amount _EQUAL, the default tolerance of a solve, count as equal. The range of a histogram of equal pressures
+# is _SHOWN times their value.
 _EQUAL, _SHOWN = 1e-6, 0.1
 
 
@@ -38,14 +38,13 @@ def plot_section(result: Result, x: float | None, y: float | None, axes: Axes | 
 
 
 def _mark_borders(axes: Axes, places: Any) -> None:
-    # The many borders of a rough surface are thin lines, so that they do not cover the curve.
+    # A rough surface has many borders. They are drawn as thin lines, so that they do not cover the curve.
     for place in places:
         axes.axvline(place, color=EDGE, linestyle=":", linewidth=1.2 if len(places) <= 12 else 0.4, zorder=0)
 
 
 def _least_range(values: Any, bins: Any) -> tuple[float, float] | None:
-    """A range with all values in the middle of one bin, where they differ by the error of a solve or less; None where
-    they differ by more."""
+    """The range of a histogram whose values are all equal to the error of a solve: all of them are in the middle of one bin. None if the values differ."""
     middle = 0.5 * (values.min() + values.max()) if values.size else 0.0
     if not np.isfinite(middle) or middle == 0.0 or np.ptp(values) > _EQUAL * abs(middle):
         return None

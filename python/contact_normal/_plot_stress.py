@@ -38,13 +38,13 @@ def plot_stress_section(stress: SubsurfaceStress, x: float | None, y: float | No
     if len(stress.depths) < 2 or len(getattr(stress, along)) < 2:
         raise ValueError(f"a section along {along} has {len(stress.depths)} depths of {len(getattr(stress, along))} elements; it must have two of each at least")
     field, units, places, d = _field(stress, of)[line], stress.units, getattr(stress, along), getattr(stress, "d" + along)
-    # The height of the section, and that of the title and the labels.
+    # The height of the figure in inches: that of the section to scale, and 1.3 for the title and the labels.
     height = float(np.clip(5.2 * np.ptp(stress.depths) / (len(places) * d) + 1.3, 2.4, 6.0))
     axes = axes or new_axes((SIZE[0], height))
     order = np.argsort(stress.depths)
     depths, shown = stress.depths[order], field[order]
     filled: Any = axes.contourf(places, depths, shown, 24, cmap="magma")
-    # No seams between the levels in vector files. Before matplotlib 3.8 each level is a collection.
+    # Edges in the colour of the level avoid seams between levels in vector files. Before matplotlib 3.8 each level is a collection of its own.
     levels: Any = [filled] if hasattr(filled, "set_edgecolor") else filled.collections
     for level in levels:
         level.set_edgecolor("face")

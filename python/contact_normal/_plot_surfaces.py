@@ -1,4 +1,4 @@
-"""Pictures of the surfaces of a contact: heights, gaps, profiles."""
+"""Pictures of surfaces before a solve: heights, gaps, profiles."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def _map(on: Gap | Heights, shown: Any, name: str, axes: Axes | None, **colours: Any) -> Axes:
-    """A map of values on a grid, with a labelled colour bar."""
+    """Draws values on the grid of `on` as a map, with a labelled colour bar."""
     axes = axes or new_axes((8.0, 6.0))
     x, y = edges(on.x, on.dx), edges(on.y, on.dy)
     extent = (x[0], x[-1], y[0], y[-1])

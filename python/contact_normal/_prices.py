@@ -1,4 +1,4 @@
-"""The costs of accuracies, before a solve."""
+"""Predicts, before a solve, what an accuracy costs."""
 
 from __future__ import annotations
 
@@ -31,22 +31,22 @@ class Price(NamedTuple):
     target : float
         The wanted relative error.
     shape : (my, mx)
-        Elements of the coarsest grid that suffices; (0, 0): not known.
+        Elements of the coarsest grid on which the wanted accuracy is reached; (0, 0): not known.
     tolerance : float
-        The tolerance of the solve.
+        The tolerance that a solve on this grid needs.
     error : float
-        Relative error with this grid and tolerance; negative: not known.
+        Predicted relative error with this grid and tolerance; negative: not known.
     seconds, seconds_one_thread : float
-        With the threads of the options, and with one; negative: not known.
+        Predicted time of the solve with the threads of the options, and with one thread; negative: not known.
     bytes : int
-        Memory of the solver; 0: not known.
+        Predicted memory of the solver; 0: not known.
     obstacle : str
         The reason for which the accuracy is out of reach: "singular", "below round-off", "too many elements", "too much memory", "too long", "too long a step";
         "": none.
     time_error : float
-        For viscoelastic bodies: the relative error by the length of the step on any grid, in addition to `error`; otherwise 0.
+        For viscoelastic bodies: the relative error by the length of the time step. It is the same on any grid, and adds to `error`. Otherwise 0.
     work_units : float
-        Products of the solve, as "work_units" of a report; 0: not known. They depend little on the machine.
+        Predicted number of products A p, as "work_units" of a report; 0: not known. It depends little on the machine.
     """
 
     target: float
@@ -62,7 +62,7 @@ class Price(NamedTuple):
 
     @classmethod
     def of(cls, row: PriceStruct) -> Price:
-        """The row of a struct of the library."""
+        """Makes a price from a struct of the library."""
         return cls(
             row.target, (row.my, row.mx), row.tolerance, row.error, row.seconds, row.seconds_one_thread, row.bytes,
             name_of(OBSTACLES, row.obstacle), row.time_error, row.work_units,
@@ -70,16 +70,16 @@ class Price(NamedTuple):
 
 
 class Prices(list[Price]):
-    """The rows of `cost_of_accuracy`.
+    """The rows of `cost_of_accuracy`: one `Price` for each target.
 
     Attributes
     ----------
     quantity : str
-        The quantity of the errors.
+        The quantity whose errors are predicted.
     estimated : str
-        The meaning of the quantity "force": "force", or "approach" if the force is prescribed.
+        What the quantity "force" is: "force", or "approach" if the force is prescribed.
     message : str
-        The reason, if a limit ended the call or no grid was solved; otherwise "".
+        The reason why prices are missing, if a limit ended the call or no grid was solved; otherwise "".
     """
 
     def __init__(self, rows: Iterable[Price], quantity: str, estimated: str = "force", message: str = "") -> None:
@@ -91,14 +91,14 @@ class Prices(list[Price]):
         return "\n".join([head, *(_line(price) for price in self), *([self.message] if self.message else [])])
 
     def plot(self, axes: Axes | None = None, measured: Sequence[tuple[float, float]] = ()) -> Axes:
-        """Draws errors over seconds, with the elements of each grid, and `measured` points (seconds, error); `axes` as for `Result.plot`."""
+        """Draws predicted errors over seconds with the elements of each grid, and `measured` points (seconds, error). `axes` is as for `Result.plot`."""
         from ._plot_accuracy import plot_prices
 
         return plot_prices(self, axes, measured)
 
 
 def _line(price: Price) -> str:
-    """One row of the table; unknown values are a dash."""
+    """One line of the printed table. A dash stands for a value that is not known."""
     my, mx = price.shape
     elements = f"{mx} x {my}" if mx else "-"
     seconds = f"{price.seconds:.2g}" if price.seconds >= 0.0 else "-"
@@ -136,20 +136,20 @@ def cost_of_accuracy(
     units: tuple[str, str] | None = None,
     **given: Unpack[AccuracyOptions],
 ) -> Prices:
-    """Predicts the costs of relative errors: grid, tolerance, seconds and bytes, from solves on small grids only.
+    """Predicts which grid, tolerance, time and memory a relative error needs. Only small grids are solved for this.
 
     Parameters
     ----------
     h, dx, dy, shape, corner, approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, units, **given
-        As for `solve_to_accuracy`, with its effects; prices have no units.
+        As for `solve_to_accuracy`, with the same effects. `units` have no effect.
     visco : mapping, optional
         Viscoelastic bodies, as for `solve`: a step from rest. Each price then has the `time_error` of the step.
     targets : sequence of float
-        Relative errors; one row each.
+        The wanted relative errors, one row each.
     quantity : str
         The quantity of the errors: "force" (the approach, if the force is prescribed), or another one of `contact_normal.quantities`.
     max_seconds, max_bytes : number
-        Limits: a row beyond one has it as its `obstacle`, and still the costs; 0: no limit.
+        Limits of the costs; 0: no limit. A row that exceeds a limit has it as its `obstacle`, and still has its costs.
     max_elements : int
         Limit of the elements of a grid; 0: 4096 x 4096.
 

@@ -1,4 +1,4 @@
-"""The search for the pull-off of a scene with adhesion."""
+"""Finds the pull-off force of a scene with adhesion."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def pull_off(
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[SolveOptions],
 ) -> Result:
-    """Finds the state of the least force: with a stronger pull the bodies part.
+    """Finds the state at pull-off: that of the least normal force, which is negative. With a stronger pull the bodies part.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Quantities of a scene, grid by grid, with their errors."""
+"""Computes quantities of a scene on several grids, with their errors."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 
     from ._scene import Scene
 
-# The largest number of coarser grids in the library.
+# The largest number of coarser grids that the library accepts.
 _MOST_COARSER = 12
 QUANTITY_NAMES = names_of("QUANTITY_")
-# The numbers of the library, by name.
+# The library's number of each quantity, by its name.
 QUANTITIES = {name: number for number, name in QUANTITY_NAMES.items()}
 LACKS = ("", "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular", "one grid", "unsolved", "not falling yet")
 
 
 def numbers(name: str, wanted: Sequence[str]) -> Any:
-    """The numbers of the named quantities, as a C array."""
+    """The library's numbers of the named quantities, as a C array."""
     if isinstance(wanted, str):
         raise TypeError(f"{name} is {wanted!r}; it must be a sequence of names")
     for each in wanted:
@@ -40,28 +40,28 @@ def numbers(name: str, wanted: Sequence[str]) -> Any:
 
 
 def estimated(scene: Scene) -> str:
-    """The meaning of the quantity "force" of a scene."""
+    """What the quantity "force" of a scene is: "force", or "approach" if the force is prescribed."""
     return "force" if scene.struct.load == PRESCRIBED_APPROACH else "approach"
 
 
 class Quantity(NamedTuple):
-    """A quantity on one grid.
+    """The value and the error of a quantity on one grid.
 
     Attributes
     ----------
     name : str
-        "force", "max_pressure", ...
+        The name of the quantity: "force", "max_pressure", ...
     shape : (my, mx)
-        The grid.
+        The elements of the grid.
     value : float
-        The value; nan: there is none, and `lack` says why.
+        The value on this grid; nan: there is none, and `lack` says why.
     error : float
         Estimated error, in the unit of the value; negative: not known, and `lack` says why.
     seconds, work_units : float
-        Seconds of set-up and solve on this grid; products on it.
+        Time of set-up and solve on this grid, and number of products A p on this grid.
     lack : str
-        "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular" (it grows from grid to grid), "one grid", "unsolved", "not
-        falling yet" (one more grid shows whether it converges); "": nothing is missing.
+        Why the value or the error is missing: "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular" (the quantity grows from
+        grid to grid), "one grid", "unsolved", "not falling yet" (one more grid shows whether the quantity converges); "": nothing is missing.
     """
 
     name: str
@@ -74,7 +74,7 @@ class Quantity(NamedTuple):
 
     @classmethod
     def of(cls, row: QuantityRow) -> Quantity:
-        """The row of a struct of the library."""
+        """Makes a quantity from a struct of the library."""
         return cls(
             name_of(QUANTITY_NAMES, row.quantity), (row.my, row.mx), row.value, row.error, row.seconds, row.work_units, name_of(LACKS, row.lack),
         )
@@ -86,7 +86,7 @@ class Quantities(list[Quantity]):
     Attributes
     ----------
     estimated : str
-        The meaning of the quantity "force": "force", or "approach" if the force is prescribed.
+        What the quantity "force" is: "force", or "approach" if the force is prescribed.
     """
 
     estimated: str = "force"
@@ -125,18 +125,18 @@ def quantities(
     coarser: int = 2,
     **given: Unpack[SceneArguments],
 ) -> Quantities:
-    """Values and errors of quantities, on the grid of the scene and on coarser ones.
+    """Computes values and errors of quantities, on the grid of the scene and on coarser ones.
 
     Parameters
     ----------
     h, dx, dy, **given
-        As for `solve`, with effects and options, but without own coefficients.
+        As for `solve`, with effects and options, but without influence coefficients of the caller.
     names : sequence of str
-        "force" (of the approach, if the force is prescribed), "max_pressure", "contact_area", "mean_gap", "stiffness", "tangential_force",
-        "creepage", "spin_moment", "stick_area", "max_von_mises", "von_mises_depth", "max_shear".
+        "force" (which is the approach, if the force is prescribed), "max_pressure", "contact_area", "mean_gap", "stiffness", "tangential_force", "creepage",
+        "spin_moment", "stick_area", "max_von_mises", "von_mises_depth", "max_shear".
     coarser : int
-        Number of coarser grids, each with half the elements of the next in both directions: 0 to 12. They give the errors of all but the first three
-        quantities.
+        Number of coarser grids, each with half the elements of the next in both directions: 0 to 12. The errors of all but the first three of the quantities
+        above are estimated from these grids.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Arguments of searches over grids: a surface with values on each of them, and limits."""
+"""Prepares calls that solve a scene on several grids: a surface with values on any grid, limits, and targets."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ._scene import Scene
 def on_any_grid(
     h: Any, dx: Any, dy: Any, shape: Any, corner: Any, effects: Mapping[str, Any], **loaded: Any
 ) -> tuple[Scene, Surface | None, tuple[float, float]]:
-    """The scene on the first grid, with its loads, elastic constants and effects, the callback of a callable surface, and the middle of the rectangle."""
+    """The scene on the first grid, the surface callback if `h` is a callable, else None, and the coordinates of the middle of the rectangle."""
     if not callable(h):
         for name, value in (("shape", shape), ("corner", corner)):
             if value is not None:
@@ -28,15 +28,15 @@ def on_any_grid(
     my, mx = (integer("shape", m) for m in both("shape", shape))
     half = 0.5 * mx * number("dx", dx), 0.5 * my * number("dy", dy)
     x, y = (-half[0], -half[1]) if corner is None else two("corner", corner)
-    # The distances of this grid are not read.
+    # The library does not read the distances of the scene if there is a surface callback: they are zeros.
     scene = Scene(np.zeros((max(my, 0), max(mx, 0))), dx, dy, effects=effects, **loaded)
-    # The library says which count is no count.
+    # Invalid counts of elements are left to the library, which has a message for them.
     scene.struct.my, scene.struct.mx = my, mx
     return scene, Surface(h, (x, y)), (0.0, 0.0) if corner is None else (x + half[0], y + half[1])
 
 
 def limits(max_seconds: Any, max_bytes: Any, max_elements: Any, surface: Surface | None) -> Any:
-    """A `contact_normal_accuracy` with its limits and the surface."""
+    """A `contact_normal_accuracy` with the given limits and surface callback."""
     accuracy = initialised("accuracy")
     accuracy.max_seconds = number("max_seconds", max_seconds)
     for name, value in (("max_bytes", max_bytes), ("max_elements", max_elements)):
@@ -48,7 +48,7 @@ def limits(max_seconds: Any, max_bytes: Any, max_elements: Any, surface: Surface
 
 
 def set_targets(accuracy: Any, targets: Mapping[str, float] | None) -> None:
-    """Writes relative errors of quantities into a `contact_normal_accuracy`."""
+    """Sets the wanted relative errors of the named quantities in a `contact_normal_accuracy`."""
     if targets is not None and not isinstance(targets, Mapping):
         raise TypeError(f"targets is {targets!r}; it must be a mapping, as {{'force': 0.01}}")
     for name, target in (targets or {}).items():

@@ -21,13 +21,15 @@ if TYPE_CHECKING:
 
     from ._scene import Scene
 
-# Linear elasticity is for small strains. The largest pressure of a ball is this part of E* if the contact is as wide as 0.6 of its radius.
+# Linear elasticity is for small strains: a largest pressure above this part of E* is a reason to warn. A ball reaches about this part when the width of its
+# contact is 0.6 of its radius (Hertz: p0/E* = 2 a/(pi R)).
 _STRAINED = 0.2
 
 # E* of solids in pascal, from gels to a rigid body on diamond.
 _SOLIDS = 1e3, 2e12
 
-# The largest pressure of a line contact with so few elements across has an error of up to 3/4; with three, of up to 1/5.
+# A contact of at most this many elements across is too narrow: the largest pressure of a line contact then has a relative error of up to 3/4. With three
+# elements across it is up to 1/5.
 _FEW = 2
 
 _ROW = [name for name in names(LedgerRow) if name not in ("struct_size", "reserved")]
@@ -39,18 +41,18 @@ class Result(Solved):
     Attributes
     ----------
     status : int
-        0 (OK): the contact conditions hold to the tolerance. > 0: stopped early, the arrays hold the best iterate. < 0 (batches only): refused, the arrays have
-        no meaning.
+        0 (OK): the contact conditions hold to the tolerance. > 0: the solve stopped early, and the arrays hold the best iterate. < 0 (batches only): the
+        problem was refused, and the arrays have no meaning.
     message : str
-        The reason, if the status is not OK, and further remarks.
+        The reason for a status that is not OK, and further remarks.
     pressure : ndarray of float, (my, mx)
         The pressures p.
     deformed_distance : ndarray of float, (my, mx)
-        e, the gap after the deformation.
+        The deformed distance e: the gap under load.
     displacement : ndarray of float, (my, mx)
-        u = A p, with the compression of layers.
+        The normal displacements u = A p of both bodies together, with the compression of a layer.
     contact : ndarray of bool, (my, mx)
-        The contact area, with the elements at the pressure limit.
+        The contact area, including the elements at the pressure limit.
     at_limit : ndarray of bool, (my, mx)
         The elements at the pressure limit.
     traction : ndarray of float, (2, my, mx)
@@ -62,7 +64,7 @@ class Result(Solved):
     friction_coefficient, yield_limit : ndarray of float, (my, mx)
         With a law of friction or a plastic layer: the state of the particles of the interface after the step; otherwise zeros.
     contact_pressure, attraction : ndarray of float, (my, mx)
-        With adhesion: q >= 0 and sigma >= 0, whose difference is p; without adhesion p and zeros.
+        With adhesion: the contact pressure q >= 0 and the attraction sigma >= 0, with p = q - sigma. Without adhesion: p, and zeros.
     x : ndarray of float, (mx,)
         x of the centres of the elements, relative to the middle of the grid.
     y : ndarray of float, (my,)
@@ -82,17 +84,17 @@ class Result(Solved):
     mean_gap : float
         The mean of the deformed distance, over the elements with a surface.
     warnings : tuple of str
-        Names of the warnings, also if the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "RANGE", "ATTRACTION", "LAW"; "STRAIN", if the
-        largest pressure is more than a fifth of E*; "MODULUS", if E* in the named units is that of no solid; and "NARROW", if the whole contact is within two
-        of several columns or rows.
+        Names of the warnings, also if the status is OK. Those of the library are "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "RANGE", "ATTRACTION" and
+        "LAW". This package adds "STRAIN" if the largest pressure is more than a fifth of E*, "MODULUS" if no solid has this E* in the named units, and "NARROW"
+        if the contact is at most two elements wide, on a grid with more columns or rows.
     tangential_force : (float, float)
         With friction: the tangential force on body 1, in x and y; otherwise zeros.
     units : (str, str) or None
-        Names of the units of lengths and forces, for pictures and files. May be set.
+        Names of the units of lengths and forces, for pictures and files. The caller may set them.
     report : dict
         The values of all groups of `contact_normal_report`: "cycles", "residual", "error_force", ... The page of the Python reference has all keys.
     ledger : Ledger
-        One dict per grid.
+        The results and costs on each grid, one dict per grid.
     """
 
     def __init__(self, status: int, message: str, outputs: Outputs, report: Any, scene: Scene, units: Any = None) -> None:
@@ -122,13 +124,13 @@ class Result(Solved):
         self.message = "\n".join(text for text in (self.message, told) if text)
 
     def _narrow(self) -> str:
-        """The directions in which the whole contact is within a few elements, although other elements have surfaces."""
+        """The directions in which the contact is at most `_FEW` elements wide, although more elements have surfaces."""
         touches = self._contact != 0
         found = [(name, axis) for name, axis in (("x", 0), ("y", 1)) if 0 < np.count_nonzero(touches.any(axis)) <= _FEW < touches.shape[1 - axis]]
         return " and ".join(name for name, axis in found if np.count_nonzero(np.isfinite(self.deformed_distance).any(axis)) > _FEW)
 
     def _ends_in_contact(self) -> str:
-        """The directions in which contact reaches an end of the grid, without a period."""
+        """The directions without a period in which the contact reaches an end of the grid."""
         period = self._scene.period
         ends = {"x": self._contact[:, [0, -1]], "y": self._contact[[0, -1]]}
         return " and ".join(name for name, elements in ends.items() if name not in period and elements.any())
@@ -138,7 +140,7 @@ class Result(Solved):
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """Names of the warnings, also if the status is OK."""
+        """Names of the warnings of the library and of this package, also if the status is OK."""
         return (*super().warnings, *("STRAIN",) * self._is_strained, *("MODULUS",) * self._is_no_solid, *("NARROW",) * self._is_narrow)
 
     @cached_property
@@ -149,18 +151,18 @@ class Result(Solved):
 
     @cached_property
     def ledger(self) -> Ledger:
-        """One dict per grid."""
+        """The results and costs on each grid, one dict per grid."""
         rows = self._rows[: min(self._report.ledger_rows, LEDGER_ROOM)]
         return Ledger(({name: getattr(row, name) for name in _ROW} for row in rows), self._estimated)
 
     @property
     def neglected(self) -> tuple[str, ...]:
-        """The effects that `neglect_below` left out; `neglected_error` has the error by this."""
+        """The effects that the option `neglect_below` left out. `neglected_error` is the error that this causes."""
         return omissions(int(self.report["neglected"]))
 
     @property
     def neglected_error(self) -> float:
-        """The largest relative change of a quantity by leaving out `neglected`, with its error; 0 if nothing is left out."""
+        """The relative error by leaving out `neglected`: the largest change of a quantity, its error included; 0 if nothing is left out."""
         return float(self.report["neglected_error"])
 
     @property
@@ -196,9 +198,9 @@ class Result(Solved):
         return plot_pressure(self, axes)
 
     def plot_section(self, x: float | None = None, y: float | None = None, axes: Axes | None = None) -> Axes:
-        """Draws the pressures along a line across the contact, with dotted lines at the edge of the contact area.
+        """Draws the pressures along a row or a column of elements, with dotted lines at the edge of the contact area.
 
-        The line is at `x` or at `y`, by default at the y of the middle of the grid; `axes` as for `Result.plot`.
+        The column is at `x`, or the row at `y`; by default it is the row in the middle of the grid. `axes` is as for `Result.plot`.
         """
         from ._plot_lines import plot_section
 
@@ -211,17 +213,17 @@ class TangentialResult(Solved):
     Attributes
     ----------
     status : int
-        0 (OK): the conditions of friction hold to the tolerance. > 0: stopped early.
+        0 (OK): the conditions of friction hold to the tolerance. > 0: the solve stopped early.
     message : str
-        The reason, if the status is not OK, and further remarks.
+        The reason for a status that is not OK, and further remarks.
     pressure : ndarray of float, (my, mx)
-        The given pressures, with 0 in the place of those that are not positive.
+        The given pressures, where those that are not positive are set to 0.
     contact : ndarray of bool, (my, mx)
         The elements with a positive pressure.
     traction, slip, stick_slip, x, y, dx, dy, units
         As those of `Result`.
     force, mean_pressure, max_pressure, contact_area : float
-        Values of the given pressures.
+        Quantities of the given pressures, as those of `Result`.
     tangential_force : (float, float)
         The tangential force on body 1, in x and y.
     report : dict

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Scene:
-    """A `contact_normal_scene` with the arrays and effects that it points to, which live as long as it does.
+    """A `contact_normal_scene` with the arrays and effects to which the struct points. They live as long as this object.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Scene:
     shear_modulus, poisson_ratio, young_modulus, e_star
         The elastic constants; see `solve`.
     effects : mapping
-        Effects by name, None: not simulated; see `solve`.
+        The effects by name as arguments of `solve`; None: the effect is not simulated.
     """
 
     def __init__(
@@ -65,24 +65,24 @@ class Scene:
             if value is not None:
                 if name in ("coating", "friction", "visco"):
                     self.bodies.needs_poisson(name)
-                self._name(name, value)
+                self._set_effect(name, value)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Structs of the library hold addresses.
+        # A scene is pickled without its struct, which holds addresses: only the data that stresses below the surface need.
         return _without_load, (self.shape, self.struct.dx, self.struct.dy, self._constants, self._of_stresses, self._own)
 
     @property
     def _of_stresses(self) -> dict[str, Any]:
-        """The effects that stresses below the surface need."""
+        """The arguments of those effects on which stresses below the surface depend."""
         return {name: self._effects.get(name) for name in _OF_STRESSES}
 
     @cached_property
     def without_load(self) -> Scene:
-        """A scene with the data that stresses below the surface need, independent of later changes by the caller."""
+        """A scene with the data that stresses below the surface need. It has copies, which later changes by the caller do not affect."""
         return _without_load(self.shape, self.struct.dx, self.struct.dy, self._constants, self._of_stresses, self._own)
 
     def on_grid(self, shape: tuple[int, int], dx: float, dy: float) -> Scene:
-        """The data that stresses below the surface need, on another grid, without a load."""
+        """A scene without a load on another grid, with the data that stresses below the surface need."""
         effects = self._of_stresses
         if effects["patches"] is not None:
             patch, factors = both("patches", effects["patches"])
@@ -92,34 +92,34 @@ class Scene:
         return _without_load(shape, dx, dy, self._constants, effects, self._own)
 
     def know_own(self, names: list[str]) -> None:
-        """Notes the own coefficients that a handle keeps, and that the scene leaves out."""
+        """Records which influence coefficients the caller gave to the handle of a solver. Later scenes of the solver leave them out."""
         self._own = names
 
     def needs_half_space(self) -> None:
-        """Refuses stresses of bodies with own coefficients."""
+        """Raises an error if the caller gives influence coefficients: stresses below the surface are those of a half-space."""
         for name in self._own:
             raise ContactNormalError(UNSUPPORTED, f"{name} is given; subsurface stresses are those of a half-space")
 
     @property
     def remark(self) -> str:
-        """Remarks for the caller on the arguments, one line each."""
+        """Remarks for the caller on arguments of friction that may be in a wrong unit, one line each."""
         return self.remarks.of_one() if self.remarks else ""
 
     @property
     def has_particles(self) -> bool:
-        """Whether particles of the interface have a state: with a law of friction or a plastic layer."""
+        """Whether the particles of the interface have a state, as with a law of friction or a plastic layer."""
         effect = self.struct.friction
         return bool(effect) and (effect.contents.law != 0 or effect.contents.yield_limit != 0.0)
 
     @property
     def period(self) -> str:
-        """Directions in which the grid is one period of a periodic scene."""
-        said = self._effects.get("period")
-        return said if isinstance(said, str) else ""
+        """The directions in which the grid is one period of a periodic scene: "x", "y", "xy" or ""."""
+        period = self._effects.get("period")
+        return period if isinstance(period, str) else ""
 
     @property
     def has_half_space(self) -> bool:
-        """Whether the bodies deform as half-spaces with their elastic constants."""
+        """Whether the bodies deform as half-spaces with their elastic constants: without influence coefficients of the caller and without coatings."""
         return not self._own and not any(self.struct.coating)
 
     @property
@@ -130,13 +130,13 @@ class Scene:
 
     @property
     def effort(self) -> int:
-        """The number of elements times the number of passes of one product."""
+        """The cost of one product A p: the number of elements times the number of products by FFT that row tables or patches need."""
         factors = [effect.contents.rows if name == "row_tables" else effect.contents.count
                    for name in ("row_tables", "patches") if (effect := getattr(self.struct, name))]
         return int(self.h.size * max([1, *factors]))
 
     def pressures_of(self, contact: Integers) -> Doubles:
-        """Pressures for a guessed contact area: uniform in it, and of the size that the load needs."""
+        """Uniform pressures in a guessed contact area, estimated from the load; 0 outside."""
         inside = contact != 0
         area = inside.sum() * self.struct.dx * self.struct.dy
         if not area:
@@ -144,16 +144,17 @@ class Scene:
         if self.struct.load == PRESCRIBED_FORCE:
             pressure = self.struct.force / area
         else:
-            # As for a circle with this area: the mean displacement by a pressure p is 16/(3 pi) p a/E*.
-            depth = np.maximum(self.struct.approach - np.where(inside, self.h, np.inf), 0.0)[inside].mean()
+            # The mean displacement of a circle of radius a by a uniform pressure p is 16/(3 pi) p a/E*. Here it is the mean of approach - h in the area.
+            displacement = np.maximum(self.struct.approach - np.where(inside, self.h, np.inf), 0.0)[inside].mean()
             compliance = sum((1.0 - nu) / (2.0 * g) for g, nu in zip(self.struct.shear_modulus, self.struct.poisson_ratio))
-            pressure = depth * 3.0 * np.pi / 16.0 / np.sqrt(area / np.pi) / compliance if compliance > 0.0 else 0.0
+            radius = np.sqrt(area / np.pi)
+            pressure = displacement * 3.0 * np.pi / 16.0 / radius / compliance if compliance > 0.0 else 0.0
         return np.where(inside, pressure if np.isfinite(pressure) else 0.0, 0.0)
 
-    def _name(self, name: str, value: Any) -> None:
-        """Names the effect `name` in the scene."""
+    def _set_effect(self, name: str, value: Any) -> None:
+        """Sets the pointer of the struct to the effect `name`, and keeps the effect and its arrays alive."""
         if name == "coating":
-            self._coat(value)
+            self._set_coatings(value)
             return
         arrays: Any
         if name == "friction":
@@ -172,8 +173,8 @@ class Scene:
         setattr(self.struct, name, ctypes.pointer(effect))
         self._kept += [effect, arrays]
 
-    def _coat(self, value: Any) -> None:
-        """Names the coatings of both bodies, None: none."""
+    def _set_coatings(self, value: Any) -> None:
+        """Sets the coating of each body; None: the body has none."""
         for body, coating in enumerate(both("coating", value, "a pair: that of body 1 and of body 2, each (thickness, shear_modulus, poisson_ratio) or None")):
             if coating is not None:
                 effect = coating_of(coating, f"coating[{body}]")
@@ -185,7 +186,7 @@ _OF_STRESSES = ("period", "patches", "coating")
 
 
 def owned(value: Any) -> Any:
-    """A copy, for callers may change their lists and arrays. Strings of numpy, which are arrays too, become plain ones."""
+    """A copy of an argument, because callers may change their lists and arrays later. Strings of numpy become plain strings."""
     if isinstance(value, str):
         return str(value)
     if isinstance(value, np.ma.MaskedArray) or hasattr(value, "dims") and hasattr(value, "copy"):
@@ -201,7 +202,7 @@ def owned(value: Any) -> Any:
 def _without_load(
     shape: tuple[int, int], dx: float, dy: float, constants: Mapping[str, Any], effects: Mapping[str, Any], own: list[str]
 ) -> Scene:
-    """A scene with no load and no surface."""
+    """A scene with a flat surface and no load: its grid, bodies and effects only."""
     scene = Scene(np.zeros(shape), dx, dy, None, 0.0, effects=effects, **constants)
     scene.know_own(own)
     return scene
@@ -239,7 +240,7 @@ def influence(value: Any) -> tuple[Any, Doubles]:
 
 
 def _per_element(name: str, value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
-    """An effect with one number, or with one per element."""
+    """The struct of `layer` or `pressure_limit`, whose value is one number or one per element, and the array to which it points."""
     one, array = {"layer": ("compliance", "compliances"), "pressure_limit": ("limit", "limits")}[name]
     effect = initialised(name)
     if np.ndim(value) == 0:

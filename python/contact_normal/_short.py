@@ -1,4 +1,4 @@
-"""The `repr` of objects that hold arrays: with shapes and ranges in place of the numbers."""
+"""The `repr` of objects that hold arrays: it has the shapes and ranges of the arrays in the place of their numbers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 
 class Short:
-    """A dataclass whose `repr` has the shapes and ranges of its arrays, without members that are None."""
+    """A base class of dataclasses. The `repr` has the shapes and ranges of arrays, and leaves out private members and those that are None."""
 
     def __repr__(self) -> str:
         members: Any = self
@@ -17,13 +17,13 @@ class Short:
 
 
 def told(holder: Any, names: Any) -> str:
-    """`repr` of an object with these members."""
+    """The `repr` of an object with the members `names`."""
     values = {name: getattr(holder, name) for name in names}
     return f"{type(holder).__name__}({', '.join(f'{name}={short(value)}' for name, value in values.items() if value is not None)})"
 
 
 def short(value: Any) -> str:
-    """`repr` of a value; of an array its shape and the range of its finite numbers."""
+    """The `repr` of a value. For an array it is the shape and the range of the finite numbers."""
     if not isinstance(value, np.ndarray):
         return repr(value)
     shape = " x ".join(map(str, value.shape))

@@ -69,55 +69,73 @@ def solve(
         Instead of either modulus: E* with 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2. The Poisson ratio may then be left out without friction and coatings. Both
         bodies are equally compliant.
     influence : array_like, (2 cy, 2 cx), or (array_like, scale), optional
-        Own influence coefficients instead of the half-space, times a scale.
+        The caller's influence coefficients in place of those of the half-space. They are multiplied by the scale, if one is given.
     layer : float or array_like, (my, mx), optional
-        Compliance of a thin layer, a length per pressure.
+        Compliance of a thin layer between the bodies, a length per pressure.
     pressure_limit : float or array_like, (my, mx), optional
-        Largest pressure.
+        The largest pressure that an element can carry, as the hardness of the material.
     period : {"x", "y", "xy"}, optional
         The grid is one period of a periodic scene.
     patches : (array_like of int (my, mx), array_like (count, count)), optional
-        The patch of each element, from 0 on, and the factors of their interaction.
+        The number of the patch of each element, from 0 on (-1: nothing touches there), and for each pair of patches the factor of the displacements that one
+        causes in the other: 1 as on one half-space, 0 none.
     row_tables : array_like, (my, my, 2 cx), or (array_like, scale), optional
-        Own coefficients of each loaded row, row and offset in x.
+        The caller's influence coefficients, one table for each loaded row: [loaded row, row of the displacement, offset in x].
     coating : (of body 1, of body 2), optional
         For each body None or `(thickness, shear_modulus, poisson_ratio)`: an elastic layer bonded to the body. The elastic constants above are then those of
         the substrate, which may be rigid (inf).
     friction : mapping, optional
-        Friction between the bodies: "coefficient" (one, or (my, mx)); "motion", "SHIFT" (default), "TRANSIENT_ROLLING" or "STEADY_ROLLING"; "creepage", a pair;
-        "force", a pair of tangential forces, None if the creepage is given; "spin", "spin_centre", "rolling_distance", "rolling_direction", "spin_offset";
-        "previous_traction", "rigid_slip", "initial_traction" and "creepage_weight", pairs of (my, mx); "compliance" of a thin elastic layer between the bodies
-        (one, or (my, mx)); "law": the fall of the coefficient with the slip velocity, a mapping of "kind" ("LINEAR", "RATIONAL", "EXPONENTIAL"), "kinetic",
-        "falling", "half_speed" (one or a pair), "speed" of rolling or "time_step" of a shift, "memory_distance", "memory_speed"; "layer": a plastic layer, a
-        mapping of "yield_limit" and "hardening"; "previous_coefficient", "previous_yield_limit" (my, mx): the state of the particles before the step; "branch":
-        "NEAR", "LOW" or "HIGH" (docs/laws.md); "continues": from the last tractions of a `Solver`; "sensitivities": True for derivatives of both forces and the
-        moment by both creepages and the spin, nine numbers row by row in `report["sensitivities"]`; "influence": own tangential coefficients (xx, yy, xy) or
-        (xx, yy, xy, scale), each (2 cy, 2 cx); "influence_cross": with these, for unlike bodies, (xz, yz); "row_tables": own tangential coefficients that
-        differ per loaded row, (xx, yy, xy) or (xx, yy, xy, scale), each (my, my, 2 cx). docs/friction.md has the signs.
+        Friction between the bodies. docs/friction.md has the signs. Its entries:
+
+        - "coefficient": mu of all elements, or (my, mx).
+        - "motion": "SHIFT" (default), "TRANSIENT_ROLLING" or "STEADY_ROLLING".
+        - "creepage": a pair, in x and y; "force": a pair of prescribed tangential forces, None in a direction whose creepage is given.
+        - "spin", and "spin_centre", the pair of coordinates about which the spin turns.
+        - "rolling_distance", "rolling_direction", "spin_offset": the step of rolling.
+        - "previous_traction", "rigid_slip", "initial_traction", "creepage_weight": pairs of (my, mx).
+        - "compliance": that of a thin elastic layer between the bodies, one or (my, mx).
+        - "law": how the coefficient falls with the slip velocity, a mapping of "kind" ("LINEAR", "RATIONAL", "EXPONENTIAL"), "kinetic", "falling" and
+          "half_speed" (one or a pair), "speed" of rolling or "time_step" of a shift, "memory_distance", "memory_speed".
+        - "layer": a plastic layer, a mapping of "yield_limit" and "hardening".
+        - "previous_coefficient", "previous_yield_limit": (my, mx), the state of the particles of the interface before the step.
+        - "branch": which of several solutions, "NEAR", "LOW" or "HIGH" (docs/laws.md).
+        - "continues": True starts the step from the last tractions of a `Solver`.
+        - "sensitivities": True for the derivatives of both forces and the moment by both creepages and the spin, nine numbers row by row in
+          `report["sensitivities"]`.
+        - "influence": the caller's tangential coefficients (xx, yy, xy) or (xx, yy, xy, scale), each (2 cy, 2 cx).
+        - "influence_cross": with "influence" for unlike bodies, the coefficients (xz, yz) of tangential displacements by a pressure.
+        - "row_tables": the caller's tangential coefficients for each loaded row, (xx, yy, xy) or (xx, yy, xy, scale), each (my, my, 2 cx).
     adhesion : mapping, optional
-        Attraction across the gap: "work" of adhesion, an energy per area (one, or (my, mx)); "law", "EXPONENTIAL" (default), "DUGDALE", "CUBIC" or
-        "VAN_DER_WAALS"; "range", a length, by default the shortest that the elements resolve; "smear", of DUGDALE; "start", "AUTO" (default), "FROM_CONTACT" or
-        "FROM_APART": which of several states; "stiffness": True for dF/dapproach; "stability": True for the distance of the state from a snap;
-        "shear_strength", a traction that adds to the bound of friction in contact. `force` may then be negative. docs/adhesion.md says how to choose the law
-        and the range.
+        Attraction across the gap. `force` may then be negative. docs/adhesion.md says how to choose the law and the range. Its entries:
+
+        - "work": the work of adhesion, an energy per area, one or (my, mx).
+        - "law": "EXPONENTIAL" (default), "DUGDALE", "CUBIC" or "VAN_DER_WAALS".
+        - "range": a length, by default the shortest that the elements resolve.
+        - "smear": DUGDALE falls to 0 linearly from (1 - smear) to (1 + smear) ranges.
+        - "start": "AUTO" (default), "FROM_CONTACT" or "FROM_APART" chooses one of several states.
+        - "stiffness": True for dF/dapproach; "stability": True for the distance of the state from a snap.
+        - "shear_strength": a traction that adds to the bound of friction in contact.
     visco : mapping, optional
-        Viscoelastic bodies: "modulus" and "time", pairs (body 1, body 2) of the moduli and the relaxation times of their branches, None for an elastic body;
-        `shear_modulus` is the instantaneous one. "time_step" of the step, 0 (default) for a jump; "form", "AUTO" (default), "RELAXATION", "CREEP" or
-        "BACKWARD_EULER"; "continues": from the last step of a `Solver`. `report` has the "time", the "step_error", the "time_error" and the "compliance".
-        docs/visco.md has the equations.
+        Viscoelastic bodies, whose `shear_modulus` is the instantaneous one. docs/visco.md has the equations. `report` has the "time", the "step_error", the
+        "time_error" and the "compliance". Its entries:
+
+        - "modulus", "time": pairs (body 1, body 2) of the moduli and the relaxation times of the branches, None for an elastic body.
+        - "time_step": the duration of the step, 0 (default) for a jump of the load.
+        - "form": the discretisation in time, "AUTO" (default), "RELAXATION", "CREEP" or "BACKWARD_EULER".
+        - "continues": True continues from the last step of a `Solver`.
     pressure, contact : array_like, (my, mx), optional
-        Initial guess: the pressures, or the largest possible contact area (booleans or integers); with `active_set="FIXED"` `contact` is the contact area.
+        Initial guess: the pressures, or the contact area (booleans or integers). With `active_set="FIXED"` `contact` is not a guess but the contact area.
     units : (str, str), optional
         Names of the units of lengths and forces, as ("mm", "N"), for pictures and files. They change no value.
     progress : callable or bool, optional
-        Called with a `Progress` after each cycle, a true result cancels; True: draws a bar on stderr.
+        A callable gets a `Progress` after each cycle, and cancels the solve if it returns a true value. True draws a bar on stderr.
     **given : SolveOptions
         method, tolerance, max_cycles, threads, ...
 
     Returns
     -------
     Result
-        Its `status` is `OK` if the contact conditions hold to the tolerance. Otherwise it is > 0: stopped early, and `message` says why.
+        Its `status` is `OK` if the contact conditions hold to the tolerance. Otherwise the status is > 0: the solve stopped early, and `message` says why.
 
     Raises
     ------
@@ -160,14 +178,14 @@ class AccurateResult(Result):
     reached : float or None
         Estimated relative error of the force (of the approach, if the force is prescribed); None: not known.
     seconds : float
-        Seconds for all grids together.
+        Wall-clock time of the solves on all grids together.
     """
 
     reached: float | None
     seconds: float
 
     def _take(self, accuracy: Any, middle: tuple[float, float]) -> None:
-        """Takes over the last grid, and its accuracy."""
+        """Sets the grid to the last one of the search, with the middle of its rectangle, and sets `reached` and `seconds`."""
         self.dx, self.dy, self.seconds, self._centre = accuracy.dx, accuracy.dy, accuracy.seconds, middle
         self._scene = self._scene.on_grid(self.pressure.shape, self.dx, self.dy)
         self.reached = accuracy.reached if accuracy.reached >= 0 else None
@@ -212,13 +230,13 @@ def solve_to_accuracy(
 ) -> AccurateResult:
     """Solves on finer and finer grids until the estimated relative error of the force is at most `target`.
 
-    If the force is prescribed, it is the error of the approach. `to_accuracy` is a short name for this function.
+    If the force is prescribed, `target` is for the error of the approach instead. `to_accuracy` is a short name for this function.
 
     Parameters
     ----------
     h : array_like, (my, mx), or callable
-        Undeformed distance on the first grid, which is refined by cubics; or h(x, y) of the coordinates of element centres, as arrays of the shapes (1, mx) and
-        (my, 1).
+        Undeformed distance on the first grid, from which finer grids are interpolated by cubics. A callable h(x, y) gets the coordinates of the element centres
+        as arrays of the shapes (1, mx) and (my, 1), and returns the undeformed distance.
     dx, dy : float
         Element sizes of the first grid.
     target : float
@@ -226,8 +244,8 @@ def solve_to_accuracy(
     max_pressure_target, contact_area_target : float
         Wanted relative errors of the largest pressure and of the corrected contact area; 0: none.
     targets : mapping, optional
-        Wanted relative errors of further quantities by name, as {"max_von_mises": 1e-2}; see `contact_normal.quantities` for the names. Up to two coarser grids
-        are then solved first.
+        Wanted relative errors of further quantities by name, as {"max_von_mises": 1e-2}; see `contact_normal.quantities` for the names. With such targets up to
+        two grids coarser than the first one are solved before it.
     max_seconds, max_bytes : number
         Limits of the costs; 0: no limit.
     max_elements : int
@@ -239,13 +257,13 @@ def solve_to_accuracy(
     approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, units, progress, **given
         As for `solve`.
     layer, pressure_limit, period, patches, coating, friction, adhesion, visco
-        As for `solve`. Arrays are those of the first grid, and their means are used on other grids. `adhesion` needs a "range", and `visco` is a step from
-        rest.
+        As for `solve`. Arrays have the shape of the first grid; on other grids each element gets a mean of their values. `adhesion` needs a "range", and
+        `visco` is a step from rest.
 
     Returns
     -------
     AccurateResult
-        With the arrays of the last grid. Its `status` is `OK` if the estimate meets the target; otherwise `message` has the best accuracy.
+        The result on the last grid. Its `status` is `OK` if the estimated errors meet the targets; otherwise `message` has the best accuracy.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Results that solves of normal and of tangential problems share."""
+"""The class `Solved`: the fields and values that results of normal and of tangential problems share."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ if TYPE_CHECKING:
     from ._scene import Scene
     from ._stress import SubsurfaceStress
 
-# The groups of a report.
+# The members of `contact_normal_report` that are structs of values.
 _GROUPS = ("normal", "tangential", "accuracy", "statistics", "adhesion", "visco")
 _WARNINGS = names_of("WARNING_")
-# Members of the tangential group with the name of one of the normal problem.
+# Members of the tangential group whose names the group of the normal problem has too.
 _ALSO_NORMAL = ("force", "moment", "residual", "gap", "update")
 
 
 def report_key(group: str, name: str) -> str:
-    """The key of a member of a group of a report."""
+    """The key of `Result.report` for a member of a group: its name, or `tangential_` and the name where the normal problem has the name too."""
     return f"tangential_{name}" if group == "tangential" and name in _ALSO_NORMAL else name
 
 
 def reported(report: Any) -> dict[str, Any]:
-    """The values of all groups of a report, with arrays as tuples: "force" is normal.force, "tangential_force" is tangential.force."""
+    """The dict of `Result.report`: the values of all groups by `report_key`, with arrays as tuples."""
     found: dict[str, Any] = {"ledger_rows": report.ledger_rows, "warnings": report.warnings}
     for group in _GROUPS:
         members = getattr(report, group)
@@ -49,7 +49,7 @@ def reported(report: Any) -> dict[str, Any]:
 
 
 class Solved(WithUnits):
-    """The result of a solve, with or without the normal problem. `Result` and `TangentialResult` have the attributes."""
+    """The base class of `Result` and `TangentialResult`, whose docstrings describe the attributes."""
 
     def __init__(self, status: int, message: str, outputs: Outputs, report: Any, scene: Scene, units: Any = None) -> None:
         self.status, self.message = status, "\n".join(text for text in (message, scene.remark) if text)
@@ -62,24 +62,24 @@ class Solved(WithUnits):
         self.units = units
 
     def __getstate__(self) -> dict[str, Any]:
-        # Pickled and copied as plain values, because structs of the library hold addresses.
+        # The report is pickled and copied as a dict of numbers, because a struct of the library holds addresses.
         return {name: value for name, value in {**self.__dict__, "report": self.report}.items() if name != "_report"}
 
-    # The following is computed when it is first used, because this takes as long as a small problem.
+    # The following attributes are computed when they are first used: together they would take as long as a small solve.
     @cached_property
     def contact(self) -> npt.NDArray[np.bool_]:
-        """The contact area, with the elements at the pressure limit."""
-        of_any_kind: npt.NDArray[np.bool_] = self._contact != 0
-        return of_any_kind
+        """The contact area: True where elements touch, also at the pressure limit."""
+        touches: npt.NDArray[np.bool_] = self._contact != 0
+        return touches
 
     def _field(self, name: str, *pair: int, kind: Any = float) -> npt.NDArray[Any]:
-        """The array of an effect; zeros without the effect."""
+        """The array `name` that an effect writes, (*pair, my, mx); zeros if the scene has no such effect."""
         written = self._of_effects.get(name)
         return np.zeros((*pair, *self.pressure.shape), kind) if written is None else written
 
     @cached_property
     def traction(self) -> Doubles:
-        """q on body 1, in x and y; zeros without friction."""
+        """The tractions q on body 1, in x and y; zeros without friction."""
         return self._field("traction", 2)
 
     @cached_property
@@ -104,17 +104,17 @@ class Solved(WithUnits):
 
     @cached_property
     def contact_pressure(self) -> Doubles:
-        """q: with adhesion p + sigma in contact, 0 outside; without adhesion p."""
+        """The contact pressure: with adhesion p + sigma in contact, and 0 outside; without adhesion p."""
         return self._of_effects.get("contact_pressure", self.pressure)
 
     @cached_property
     def attraction(self) -> Doubles:
-        """sigma(e) of adhesion; zeros without."""
+        """The attraction sigma(e) across the gap; zeros without adhesion."""
         return self._field("attraction")
 
     @cached_property
     def report(self) -> dict[str, Any]:
-        """The values of `contact_normal_report`."""
+        """The values of all groups of `contact_normal_report` by name."""
         return reported(self._report)
 
     @property
@@ -159,7 +159,7 @@ class Solved(WithUnits):
         return x, y
 
     def _numbers(self) -> list[str]:
-        """The values in `repr`."""
+        """The quantities that `repr` shows, as texts with units."""
         my, mx = self.pressure.shape
         share = self.contact_area / (my * mx * self.dx * self.dy) if self.pressure.size else 0.0
         told = [
@@ -198,7 +198,7 @@ class Solved(WithUnits):
         return plot_histogram(self, bins, axes)
 
     def _tractions_on(self, body: int, traction: Any) -> Any:
-        """The given tractions, or those of friction with their sign on this body; None without any."""
+        """The tractions that load a body below its surface: the given ones, else those of friction with their sign on this body; None without any."""
         if traction is None and self.has_friction and self.traction.any():
             sign = 1.0 if body == 1 else -1.0
             return sign * self.traction[0], sign * self.traction[1]
@@ -214,22 +214,22 @@ class Solved(WithUnits):
         principal: bool = False,
         threads: int = 1,
     ) -> SubsurfaceStress:
-        """Computes the stresses below the surface of one body, from these pressures.
+        """Computes the stresses below the surface of one body by the pressures of this result.
 
         Parameters
         ----------
         depths : array_like, (n,)
             Depths into the body, in any order.
         traction : (array_like (my, mx), array_like (my, mx)), optional
-            Tractions on this body, in x and in y; by default those of `friction`, if there are any.
+            Tractions on this body, in x and in y; by default those of the result, with their sign on this body.
         body : {1, 2}
-            The body, whose Poisson ratio is used.
+            The body whose stresses are computed, with its Poisson ratio.
         components : sequence of str, optional
-            The wanted ones of "xx", "yy", "zz", "xy", "xz", "yz", "von_mises", "maximum_shear"; by default all. Others are None.
+            The wanted ones of "xx", "yy", "zz", "xy", "xz", "yz", "von_mises", "maximum_shear"; by default all. The others are None in the result.
         principal : bool
             Whether principal stresses and their directions are also wanted.
         threads : int
-            0: all cores.
+            Number of threads; 0: all cores.
 
         Returns
         -------
@@ -261,7 +261,7 @@ class Solved(WithUnits):
         body: int = 1,
         threads: int = 1,
     ) -> Doubles:
-        """Computes the stresses at single points of one body, from these pressures.
+        """Computes the stresses at single points of one body by the pressures of this result.
 
         Parameters
         ----------
@@ -280,13 +280,13 @@ class Solved(WithUnits):
         return at_points(self._scene, self.pressure, points, self._tractions_on(body, traction), body, threads, self._centre)
 
     def to_xarray(self) -> Any:
-        """All fields as an `xarray.Dataset` with coordinates, names and, if `units` are known, units. Needs xarray."""
+        """Returns all fields as an `xarray.Dataset` with coordinates, names and, if `units` are known, units. Needs xarray."""
         from ._datasets import of_result
 
         return of_result(self)
 
     def to_netcdf(self, path: str | os.PathLike[str]) -> None:
-        """Writes the dataset of `to_xarray` as a file, whole or not at all. Needs xarray and netCDF4."""
+        """Writes the dataset of `to_xarray` as a NetCDF file, whole or not at all. Needs xarray and netCDF4."""
         from ._netcdf import write, xarray
 
         xarray()

@@ -1,4 +1,4 @@
-"""A handle for many solves on one grid and one pair of bodies."""
+"""The class `Solver`: many solves on one grid with one pair of bodies."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ _Problem = tuple[Scene, Outputs]
 
 
 class Solver:
-    """A handle for many solves on one grid and one pair of bodies, whose set-up is made once.
+    """Solves many problems on one grid with one pair of bodies. The influence coefficients and operators are set up once.
 
-    It is freed at the end of a `with`, by `close`, or when it has no references. One thread at a time may use it.
+    A solver is freed at the end of a `with`, by `close`, or when it has no references. One thread at a time may use a solver.
 
     Parameters
     ----------
@@ -55,9 +55,9 @@ class Solver:
     shear_modulus, poisson_ratio, young_modulus, e_star, influence, layer, period, patches, row_tables, coating, units, **given
         As for `solve`: for all later solves.
     friction : mapping, optional
-        Its "influence" and "influence_cross", or its "row_tables": the tangential coefficients of later solves, whose friction may leave them out.
+        The entries "influence" and "influence_cross", or "row_tables": the tangential coefficients of all later solves, whose `friction` may leave them out.
     visco : mapping, optional
-        Its "modulus" and "time": the branches of later solves, whose `visco` may leave them out.
+        The entries "modulus" and "time": the branches of the bodies in all later solves, whose `visco` may leave them out.
 
     Examples
     --------
@@ -102,7 +102,8 @@ class Solver:
         self._given = given
         self._visco = owned(visco)
         self._own = [name for name, table in (("influence", influence), ("row_tables", row_tables)) if table is not None]
-        # The set-up checks the undeformed distance and the load, but does not use them. Invalid counts are left to the library, which has a message for them.
+        # The library checks the undeformed distance and the load of a set-up, but does not use them. Invalid counts of elements are left to the library, which
+        # has a message for them.
         scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, None, 0.0, **self._bodies,
                       effects={"influence": influence, "row_tables": row_tables, "friction": friction, "visco": visco, **self._effects})
         scene.struct.my, scene.struct.mx = self._shape
@@ -145,14 +146,14 @@ class Solver:
         progress: Callable[[Progress], Any] | bool | None = None,
         **given: Unpack[SolveOptions],
     ) -> Result:
-        """Solves for an undeformed distance and a load.
+        """Solves the contact problem of an undeformed distance and a load.
 
         Parameters
         ----------
         h : array_like, (my, mx)
             Undeformed distance.
         approach, force, mean_pressure, pressure_limit, friction, adhesion, visco, pressure, contact, progress, **given
-            As for the function `solve`; options add to those of the set-up. `initial_guess="PREVIOUS"` starts from the last result.
+            As for the function `solve`. Options replace those of the same name that the set-up has. `initial_guess="PREVIOUS"` starts from the last result.
 
         Returns
         -------
@@ -192,13 +193,13 @@ class Solver:
         approach, force, mean_pressure : float or array_like, (count,)
             One of them: one value for all problems, or one for each.
         pressure_limit : float or array_like, (my, mx), optional
-            For all problems.
+            As for `solve`; the same for all problems.
         friction : mapping, optional
-            For all problems, as for `solve`, but "continues" is refused, because the order of the solves is not defined.
+            As for `solve`; the same for all problems. "continues" is refused, because the order of the solves is not defined.
         adhesion : mapping, optional
-            For all problems, as for `solve`.
+            As for `solve`; the same for all problems.
         pressure, contact : sequence of array_like, (count, my, mx), optional
-            Initial guesses.
+            Initial guess of each problem, as for `solve`.
         **given : SolveOptions
             As for `solve`; `initial_guess` may not be "PREVIOUS".
 
@@ -222,7 +223,7 @@ class Solver:
             guess, area = (None if values is None else values[i] for values in (pressure, contact))
             problems.append((scene, Outputs(self._shape, guess, area, struct, friction is not None, scene, adhesion is not None)))
         threads = self._given.get("threads", 1) or os.cpu_count() or 1
-        # The time limit is that of the whole call.
+        # `max_seconds` limits the whole call: each part of the batch gets the time that is left.
         clock, results = Clock(struct.max_seconds), []
         for part in parts(count, threads):
             struct.max_seconds = clock.left
@@ -230,7 +231,7 @@ class Solver:
         return results
 
     def _solved(self, problems: list[_Problem], struct: Any) -> list[Result]:
-        """The results of some problems of a batch."""
+        """Solves some problems of a batch in one call of the library."""
         count = len(problems)
         scenes = (SceneStruct * count)(*(scene.struct for scene, _ in problems))
         fields = (Fields * count)(*(outputs.fields for _, outputs in problems))
@@ -254,16 +255,16 @@ class Solver:
         progress: Callable[[Progress], Any] | bool | None = None,
         **given: Unpack[SolveOptions],
     ) -> TangentialResult:
-        """The function `solve_tangential`, with the coefficients, the operators and the last tractions of this solver.
+        """Solves the tangential problem for given pressures, as the function `solve_tangential`, with the operators and the last tractions of this solver.
 
         Parameters
         ----------
         pressure : array_like, (my, mx)
             Given pressures; those that are not positive count as no contact.
         friction : mapping
-            As for `solve`; `"continues": True`: the previous tractions are the last ones of this solver.
+            As for `solve`. With `"continues": True` the last tractions of this solver are the previous tractions of the step.
         progress, **given
-            As for `solve`; `initial_guess="PREVIOUS"` starts from the last tractions.
+            As for `solve`. With `initial_guess="PREVIOUS"` the iteration starts from the last tractions.
 
         Returns
         -------
@@ -283,7 +284,7 @@ class Solver:
         progress: Callable[[Progress], Any] | bool | None = None,
         **given: Unpack[SolveOptions],
     ) -> FrictionBatch:
-        """The function `friction_batch` for given pressures, with the coefficients and operators of this solver.
+        """Solves many tangential problems for given pressures, as the function `friction_batch`, with the operators of this solver.
 
         Parameters
         ----------
@@ -303,14 +304,14 @@ class Solver:
         return table_of(scene, pressures, entries, options({**self._given, **given}), progress, fields, self._handle, self._units)
 
     def set_influence(self, influence: Any = None, friction: Mapping[str, Any] | None = None) -> None:
-        """Sets other influence coefficients for later solves; only for a solver that was set up with some.
+        """Replaces the caller's influence coefficients for later solves. The solver must have been set up with such coefficients.
 
         Parameters
         ----------
         influence : array_like, (2 cy, 2 cx), or (array_like, scale), optional
             As for `solve`.
         friction : mapping, optional
-            Its "influence" and "influence_cross", or its "row_tables", as for `solve`.
+            The entries "influence" and "influence_cross", or "row_tables", as for `solve`.
         """
         effect, table = (None, None) if influence is None else influence_of(influence)
         tables, kept, _ = (None, None, "") if friction is None else friction_of(friction, self._shape)
@@ -318,7 +319,7 @@ class Solver:
         check(*called(library.contact_normal_solver_set_influence, *structs, handle=self._handle, keep=(table, kept)))
 
     def product(self, pressure: npt.ArrayLike) -> Doubles:
-        """The displacements u = A p of pressures of any sign, with all effects of the set-up that are part of A.
+        """Computes the displacements u = A p of pressures of any sign. A contains the effects of the set-up that change it: layers, periods, patches, coatings.
 
         Parameters
         ----------
@@ -328,7 +329,7 @@ class Solver:
         Returns
         -------
         ndarray, (my, mx)
-            Displacements; the last result of the solver does not change.
+            Displacements. The last result, from which a later solve may start, does not change.
         """
         given = doubles("pressure", pressure, self._shape)
         found = np.zeros(self._shape)
@@ -336,7 +337,9 @@ class Solver:
         return found
 
     def stiffness(self) -> float:
-        """dF/d approach of the last result, a force per length, for a constant contact area, constant tractions, and constant pressures at their limit.
+        """Computes the stiffness dF/dapproach of the last result, a force per length.
+
+        The contact area, the tractions, and the pressures at their limit are held constant.
 
         Raises
         ------
@@ -352,7 +355,7 @@ class Solver:
         return value.value
 
     def close(self) -> None:
-        """Frees the handle, at once or when the call that uses it returns; a second call has no effect."""
+        """Frees the solver: at once, or when the call that uses it returns. Closing it again has no effect."""
         self._handle.close()
 
     def __enter__(self) -> Solver:

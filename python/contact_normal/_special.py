@@ -1,4 +1,4 @@
-"""Closed forms: the contact of Hertz, and the influence coefficients of the half-space."""
+"""Solutions and coefficients that need no solve: the contact of Hertz, tables of influence coefficients, the compliance of a coating."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ def hertz(
     young_modulus: Both | None = None,
     e_star: float | None = None,
 ) -> HertzSolution:
-    """The exact solution for h = curvature_x x^2 + curvature_y y^2.
+    """Computes the exact solution of Hertz for the undeformed distance h = curvature_x x^2 + curvature_y y^2.
 
     Parameters
     ----------
     curvature_x, curvature_y : float
-        1/length, positive. A ball of radius R on a plane has 1/(2 R).
+        Coefficients of x^2 and y^2, one over a length, positive. A ball of radius R on a plane has 1/(2 R).
     approach, force : float
-        Exactly one of them.
+        Exactly one of them: the approach of the bodies, or the normal force.
     shear_modulus, poisson_ratio, young_modulus, e_star
         As for `solve`.
 
@@ -93,7 +93,7 @@ def influence_half_space(
     young_modulus: Both | None = None,
     e_star: float | None = None,
 ) -> Doubles:
-    """The influence coefficients of the half-space, as a table that `influence` takes.
+    """Computes the influence coefficients of the half-space, as a table for the argument `influence` of `solve`.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def influence_rolling(
     visco: Mapping[str, Any],
     speed: float,
 ) -> Doubles:
-    """The influence coefficients of viscoelastic bodies in steady rolling, as a table that `influence` takes, for the normal problem.
+    """Computes the influence coefficients of viscoelastic bodies in steady rolling, as a table for the argument `influence` of `solve`.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def influence_rolling(
     >>> bool(table[4, 4] > table[4, 12])  # behind the element, and ahead of it
     True
     """
-    return _rolling(library.contact_normal_influence_rolling, (), (cx, cy, dx, dy), (shear_modulus, poisson_ratio, visco, speed))
+    return _rolling_table(library.contact_normal_influence_rolling, (), (cx, cy, dx, dy), (shear_modulus, poisson_ratio, visco, speed))
 
 
 def influence_rolling_tangential(
@@ -177,12 +177,12 @@ def influence_rolling_tangential(
     visco: Mapping[str, Any],
     speed: float,
 ) -> Doubles:
-    """The tangential influence coefficients of viscoelastic bodies, for `friction=dict(influence=(xx, yy, xy), ...)` in steady rolling.
+    """Computes the tangential influence coefficients of viscoelastic bodies in steady rolling, for `friction=dict(influence=(xx, yy, xy), ...)`.
 
     Parameters
     ----------
     cx, cy, dx, dy, shear_modulus, poisson_ratio, visco, speed
-        As for `influence_rolling`; the bodies must be alike, both instantaneously and in relaxation. The tables must cover the offsets within the grid, and
+        As for `influence_rolling`. The bodies must be alike, both instantaneously and in relaxation. The tables must cover all offsets within the grid, and
         those within the contact area plus a step.
 
     Returns
@@ -198,15 +198,18 @@ def influence_rolling_tangential(
     >>> bool(xx[4, 4] > xx[4, 12]), bool(abs(xy[4]).max() == 0)
     (True, True)
     """
-    return _rolling(
+    return _rolling_table(
         library.contact_normal_influence_rolling_tangential, (3,), (cx, cy, dx, dy), (shear_modulus, poisson_ratio, visco, speed)
     )
 
 
-def _rolling(function: Any, more: tuple[int, ...], sizes: tuple[int, int, float, float], of_bodies: tuple[Both, Both, Mapping[str, Any], float]) -> Doubles:
+def _rolling_table(
+    function: Any, components: tuple[int, ...], sizes: tuple[int, int, float, float], of_bodies: tuple[Both, Both, Mapping[str, Any], float]
+) -> Doubles:
+    """The table (*components, 2 cy, 2 cx) that a function of the library computes for rolling bodies."""
     (cx, cy, dx, dy), (shear_modulus, poisson_ratio, visco, speed) = sizes, of_bodies
     cx, cy = integer("cx", cx), integer("cy", cy)
-    table = np.zeros((*more, 2 * max(cy, 0), 2 * max(cx, 0)))
+    table = np.zeros((*components, 2 * max(cy, 0), 2 * max(cx, 0)))
     constants = bodies(shear_modulus, poisson_ratio, None, None)[:2]
     size = number("dx", dx), number("dy", dy)
     effect, arrays = named_visco(visco)
@@ -217,9 +220,9 @@ def _rolling(function: Any, more: tuple[int, ...], sizes: tuple[int, int, float,
 def coating_compliance(
     thickness: float, shear_modulus: float, poisson_ratio: float, wave_number: npt.ArrayLike, *, below: tuple[float, float]
 ) -> Doubles:
-    """The compliance of a coated body for a pressure wave: the amplitude of the displacement over that of the pressure.
+    """Computes the compliance of a coated body to a sinusoidal pressure: the amplitude of the displacement over that of the pressure.
 
-    For comparisons of a coating with other formulas. Without a coating it is (1 - nu)/(G k).
+    The compliance serves to compare a coating with other formulas. Without a coating it is (1 - nu)/(G k) at the wave number k.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The style of this project's pictures: contact_normal.mplstyle, with dark.mplstyle over it for dark pages."""
+"""The style of this project's pictures: contact_normal.mplstyle; for dark pages dark.mplstyle replaces some of its settings."""
 
 from __future__ import annotations
 

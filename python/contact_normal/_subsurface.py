@@ -1,4 +1,4 @@
-"""Stresses below the surface, of a result or of given pressures and tractions."""
+"""Computes stresses below the surface, by the pressures of a result or by given pressures and tractions."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def at_points(
     places = doubles("points", points, dimensions="(n, 3)")
     if places.shape[1] != 3:
         raise ValueError(f"points has shape {places.shape}; it must be (n, 3)")
-    # Coordinates of the library are relative to the middle of the grid.
+    # The library takes coordinates relative to the middle of the grid.
     moved = places - np.array([*middle, 0.0])
     given, struct = _loads(pressure, traction, scene.shape), options({"threads": threads})
     stress = np.zeros((len(moved), 6))
@@ -106,7 +106,7 @@ def subsurface_stress(
     threads: int = 1,
     units: tuple[str, str] | None = None,
 ) -> SubsurfaceStress:
-    """Computes the stresses below the surface of one body, from given pressures and tractions, which are constant on each element.
+    """Computes the stresses below the surface of one body by given pressures and tractions, which are constant on each element.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def subsurface_stress(
     depths, traction, body, components, principal, threads
         As for `Result.subsurface`.
     poisson_ratio : float or pair of floats
-        For both bodies or for each.
+        The Poisson ratio of both bodies, or of each.
     period, patches, units
         As for `solve`.
 
@@ -127,7 +127,7 @@ def subsurface_stress(
 
     Examples
     --------
-    Deep below a square of uniform pressure, nearly as for a point force: szz = -3 F/(2 pi z^2)
+    Deep below a square of uniform pressure the stress is nearly that of a point force F, szz = -3 F/(2 pi z^2):
 
     >>> import numpy as np, contact_normal
     >>> stress = contact_normal.subsurface_stress(np.ones((9, 9)), 0.1, 0.1, [20.0], poisson_ratio=0.3, components=["zz"])
@@ -153,14 +153,14 @@ def stress_at_points(
     patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     threads: int = 1,
 ) -> Doubles:
-    """Computes the stresses at single points of one body, from given pressures and tractions, which are constant on each element.
+    """Computes the stresses at single points of one body by given pressures and tractions, which are constant on each element.
 
     Parameters
     ----------
     pressure, dx, dy, poisson_ratio, traction, body, patches, threads
         As for `subsurface_stress`.
     points : array_like, (n, 3)
-        x and y relative to the middle of the grid, and the depth. At depth 0 no point may be on the edge of an element.
+        The coordinates x and y relative to the middle of the grid, and the depth. At depth 0 no point may be on the edge of an element.
 
     Returns
     -------
@@ -179,7 +179,7 @@ def stress_at_points(
 
 
 def _loaded(pressure: Any, traction: Any, dx: Any, dy: Any, poisson_ratio: Any, period: Any, patches: Any) -> tuple[Scene, Doubles | None]:
-    """A scene for the stresses of given loads. They do not depend on the moduli."""
+    """A scene for the stresses by given pressures and tractions, and the pressures. The shear modulus is set to 1, because stresses do not depend on it."""
     pressures = None if pressure is None else doubles("pressure", pressure)
     if pressures is None and traction is None:
         raise TypeError("give pressure, or traction, or both")
@@ -188,7 +188,7 @@ def _loaded(pressure: Any, traction: Any, dx: Any, dy: Any, poisson_ratio: Any, 
 
 
 def _loads(pressure: Any, traction: Any, shape: tuple[int, int]) -> list[Any]:
-    """Pressures and tractions as pointers."""
+    """Pointers to the pressures and to the tractions in x and y; None where one is not given."""
     given = both("traction", traction) if traction is not None else (None, None)
     tractions = [None if one is None else doubles(f"traction[{k}]", one, shape) for k, one in enumerate(given)]
     return [None if array is None else pointer(array) for array in (pressure, *tractions)]

@@ -1,4 +1,4 @@
-"""The tangential problem for given pressures."""
+"""Solves the tangential problem for given pressures."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 def with_pressures(
     h: Any, pressure: Any, dx: Any, dy: Any, loads: Mapping[str, Any], **given: Any
 ) -> tuple[Scene, Doubles | None]:
-    """The scene of a surface, or of given pressures, for which neither the surface nor the load is used."""
+    """The scene and the pressures of a tangential problem. If pressures are given, the surface and the load are not used; otherwise the pressures are None."""
     if (given["shear_modulus"] is None) == (given["young_modulus"] is None):
         raise TypeError("give either shear_modulus or young_modulus, the elastic constants of the bodies, and only one of them")
     if pressure is None:
@@ -58,10 +58,10 @@ def solve_tangential(
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[SolveOptions],
 ) -> TangentialResult:
-    """Solves the tangential problem for given pressures: tractions, slip, and the sticking elements.
+    """Solves the tangential problem for given pressures: finds the tractions, the slips, and the stick and slip areas.
 
-    Tractions do not change the pressures: for unlike bodies this is half a turn between the two problems. `friction_batch` solves many motions or forces for
-    the same pressures.
+    The pressures stay as they are given. For bodies with different elastic constants, where tractions change the pressures, this is the tangential half of one
+    iteration between the normal and the tangential problem. `friction_batch` solves many motions or forces for the same pressures.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def solve_tangential(
     friction : mapping
         As for `solve`.
     shear_modulus, poisson_ratio, young_modulus, influence, layer, coating, units, progress, **given
-        As for `solve`. With `influence` friction also needs its own coefficients.
+        As for `solve`. With `influence` the entry "influence" of `friction` is needed, too.
     period
         Refused, as in `solve` with friction.
 
@@ -87,7 +87,7 @@ def solve_tangential(
 
     Examples
     --------
-    Half of the greatest force, for a uniform pressure:
+    Half of the largest possible force mu N, for a uniform pressure:
 
     >>> import numpy as np, contact_normal
     >>> pressure = np.pad(np.full((8, 8), 100.0), 2)
@@ -108,7 +108,7 @@ def of_pressures(
     scene: Scene, pressures: Doubles, struct: Any, progress: Callable[[Progress], Any] | bool | None, units: tuple[str, str] | None,
     handle: Handle | None,
 ) -> TangentialResult:
-    """Solves the tangential problem of a scene, with a handle or without."""
+    """Solves the tangential problem of a scene for given pressures, with the handle of a solver or without."""
     outputs, results = Outputs(scene.shape, has_friction=True, scene=scene), initialised("friction_results")
     outputs.doubles[0][:] = np.where(pressures > 0.0, pressures, 0.0)
     outputs.contact[:] = outputs.doubles[0] > 0.0

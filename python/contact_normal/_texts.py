@@ -1,4 +1,4 @@
-"""The text of files that instruments and spreadsheets write."""
+"""Reads the text of files that instruments and spreadsheets write, in whatever encoding."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import codecs
 import os
 from pathlib import Path
 
-# The encodings that the first bytes of a file name.
+# Byte order marks at the beginning of a file, and the encodings that they indicate.
 _MARKS = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
-# A text has no byte 0 among its first bytes, this many.
+# A file is taken for a text if it has no byte 0 among this number of its first bytes.
 _LOOKED_AT = 4096
 
 
 def text_of(path: str | os.PathLike[str]) -> str:
-    """The text of a file, in the encoding that its first bytes name, else UTF-8, else Latin-1. Minus signs become hyphens."""
+    """The text of a file, in the encoding of its byte order mark, else in UTF-8 if that is valid, else in Latin-1. Typographic minus signs become hyphens."""
     return decoded(Path(path).read_bytes())
 
 
@@ -24,7 +24,7 @@ def starts_with_mark(path: str | os.PathLike[str]) -> bool:
 
 
 def decoded(data: bytes, cut: bool = False) -> str:
-    """The text of bytes. `cut`: they may end within a character."""
+    """The text of the bytes of a file; see `text_of`. `cut`: the bytes are the beginning of a file and may end within a character."""
     named = [encoding for mark, encoding in _MARKS.items() if data.startswith(mark)]
     try:
         text = data.decode(named[0] if named else "utf-8-sig", errors="replace" if named else "strict")
@@ -36,7 +36,7 @@ def decoded(data: bytes, cut: bool = False) -> str:
 
 
 def is_text(path: str | os.PathLike[str]) -> bool:
-    """Whether a file is text, and not binary."""
+    """Whether a file is a text, and not binary."""
     with open(path, "rb") as file:
         data = file.read(_LOOKED_AT)
     return b"\0" not in data or data.startswith(tuple(_MARKS))

@@ -1,4 +1,4 @@
-"""A time limit that several calls of the library share, and whether one of them was ended."""
+"""A time limit that several calls of the library share."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from ._constants import CANCELLED, ITERATION_LIMIT, OK
 if TYPE_CHECKING:
     from ._result import Result
 
-# Seconds that are passed if none are left: 0 would be no limit.
+# The limit of a call, in seconds, if no time is left: 0 would mean that there is no limit.
 _LEAST = 1e-9
 
 
 class Clock:
-    """A limit of `seconds` from now on; 0: none."""
+    """A time limit of `seconds` from the construction of the object on; 0: there is none."""
 
     def __init__(self, seconds: float) -> None:
         self._began, self._seconds = time.monotonic(), seconds
@@ -27,7 +27,7 @@ class Clock:
 
     @property
     def left(self) -> float:
-        """The limit of the next call. Invalid limits are passed on, for the library to refuse."""
+        """The seconds that are left for the next call; 0: no limit. An invalid limit is returned as it is, and the library refuses it."""
         return max(self._rest(), _LEAST) if self._seconds > 0.0 else self._seconds
 
     @property
@@ -37,7 +37,7 @@ class Clock:
 
 
 class TimeLimit:
-    """The limit of the option `max_seconds`, if it is given, from now on. A callable `progress` that cancels a solve also ends the others."""
+    """The limit `max_seconds` of several solves together, from the construction of the object on. A `progress` that cancels one solve ends them all."""
 
     def __init__(self, given: Mapping[str, Any]) -> None:
         self._clock = Clock(number("max_seconds", given.get("max_seconds", 0.0)))
@@ -46,7 +46,7 @@ class TimeLimit:
 
     @property
     def left(self) -> dict[str, Any]:
-        """The options for the next solve."""
+        """The options that the next solve needs: `max_seconds` if there is a limit, and `progress` if it is a callable."""
         told = {"progress": self._tell} if callable(self._progress) else {}
         return {**told, "max_seconds": left} if (left := self._clock.left) else told
 
@@ -55,19 +55,19 @@ class TimeLimit:
         return self._clock.is_over
 
     def _tell(self, progress: Any) -> bool:
-        # The status of the solve may have another reason.
+        # The status of the solve is not enough: the solve may end for another reason before it is cancelled.
         if is_cancelled := bool(self._progress(progress)):
             self._is_cancelled = True
         return is_cancelled
 
     def ended(self, result: Result) -> bool:
-        """Whether a solve was cancelled, or stopped early without time left, so that no other one may follow. A cancelled one gets the status CANCELLED."""
+        """Whether no other solve may follow this one: it was cancelled, or it stopped early and no time is left. The status of a cancelled one is CANCELLED."""
         if self._is_cancelled and result.status == OK:
             _stop(result, CANCELLED, "the progress callback cancelled")
         return self._is_cancelled or result.status == CANCELLED or (result.status != OK and self._clock.is_over)
 
     def leaves_none(self, result: Result, why: str) -> bool:
-        """Whether no time is left after this solve; its status and message then say so, and what is missing."""
+        """Whether no time is left after this solve. If so, the status of its result becomes ITERATION_LIMIT, and `why` is added to its message."""
         if self._clock.is_over:
             _stop(result, ITERATION_LIMIT, f"max_seconds was reached {why}")
             return True
@@ -75,7 +75,7 @@ class TimeLimit:
 
 
 def _stop(result: Result, status: int, why: str) -> None:
-    """Sets the status and the message of a result at which the call ended."""
+    """Sets the status of a result that was OK, and adds a reason to its message."""
     if result.status == OK:
         result.status = status
     result.message = "\n".join(text for text in (why, result.message) if text)

@@ -15,7 +15,7 @@ _PAIR = "a pair: those of body 1 and of body 2, None where a body is elastic"
 
 
 def visco(value: Any) -> tuple[Any, Any]:
-    """A `contact_normal_visco`, and the arrays that it points to."""
+    """A `contact_normal_visco` from the mapping of a caller, and the arrays to which it points."""
     if not isinstance(value, Mapping):
         raise TypeError(f"visco is {value!r}; it must be a mapping of {', '.join(_KNOWN)}")
     unknown = [str(name) for name in value if name not in _KNOWN]

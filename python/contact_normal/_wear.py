@@ -1,4 +1,4 @@
-"""Wear: frictional work and depth of wear of each element, from tractions and slips."""
+"""Computes frictional work and the depth of wear of each element, from tractions and slips."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ class FrictionalWear(NamedTuple):
     depth : array, (my, mx)
         The depth of wear of each element, a length.
     passage : array, (my,), or None
-        The loss of a point of a surface that rolls along x in one passage through the contact; None without a rolling distance.
+        The depth of wear of a point of a surface that rolls along x, after one passage through the contact; None without a rolling distance.
     total_work : float
-        The work of all elements, an energy.
+        The frictional work of all elements, an energy.
     volume : float
         The volume of worn material.
     largest_depth : float
-        The largest depth of wear.
+        The largest value of `depth`.
     at : (float, float)
-        The place (x, y) of the largest depth, relative to the middle of the grid.
+        The coordinates (x, y) of the largest depth, relative to the middle of the grid.
     """
 
     work: npt.NDArray[np.float64]
@@ -63,7 +63,8 @@ def frictional_wear(
 ) -> FrictionalWear:
     """Computes the frictional work and the depth of wear (Archard) of each element, from the result of a solve with friction.
 
-    The depth is K/H times the frictional work per area, which is -(q . s). With pressures it is K/H times the pressure times the length of s.
+    The depth is K/H times the frictional work per area, -(q . s), where q are the tractions and s the slips. If pressures are given, the depth is instead K/H
+    times the pressure times the length of s.
 
     Parameters
     ----------
@@ -72,15 +73,16 @@ def frictional_wear(
     dx, dy : float
         Element sizes.
     coefficient : float or array_like, (my, mx)
-        K, the wear coefficient; by default 0, so that only the work is computed.
+        K, the wear coefficient; by default 0: only the work is computed.
     hardness : float
-        H, a pressure; with 1 (default) the coefficient is K/H, a volume per energy.
+        H, a pressure. With 1 (default) `coefficient` stands for K/H, a volume per energy.
     pressure : array_like, (my, mx), optional
-        Pressures: the depth is then that of load times distance.
+        Pressures. If they are given, the depth follows from pressure times distance, as above.
     steps : float
-        The number of steps of `work` and `depth`: L/dq for a length L that is rolled in steps of dq, V/dq for a power.
+        The number by which the work and the depth of one step are multiplied: L/dq for a length L that is rolled in steps of dq. With V/dq for a speed V the
+        work becomes a power, and the depth a rate.
     rolling_distance : float, optional
-        dq, the length of a step of rolling along x. It is needed for passages.
+        dq, the length of a step of rolling along x. It is needed for `passage`.
 
     Returns
     -------

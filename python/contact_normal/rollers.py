@@ -1,4 +1,4 @@
-"""Rollers and gear teeth by their radii, crowns and profiles: gaps of lines and of crowned contacts.
+"""Gaps of rollers and gear teeth from their radii, crowns and profiles: of line contacts, and of crowned contacts.
 
 x runs in the rolling direction, y along the axis of the roller. Two teeth of spur gears touch like two cylinders whose radii are the
 radii of curvature of the flanks at the point of contact::
@@ -29,11 +29,11 @@ if TYPE_CHECKING:
     # The drop of the surface of a roller below its cylinder, as a function of places along its axis.
     Drop = Callable[[Doubles], Doubles]
 
-# The factor of a logarithmic drop divided by the length is some 1e-4 for rollers of steel. Outside these limits the units are probably mixed.
+# The factor of a logarithmic drop, divided by the length of the roller, is some 1e-4 for steel. Below _FLAT or above _DEEP units are probably mixed.
 _FLAT = 1e-6
 _DEEP = 0.02
 
-# The end of a grid may touch if its drop is less than this part of the undeformed distance at the sides of the grid.
+# The ends of a grid in y may touch if the drop there is less than this part of the undeformed distance at the sides of the grid in x.
 _TOUCHED = 0.25
 
 # The factor of the drop of ISO/TS 16281:2008, divided by the diameter of the roller.
@@ -62,7 +62,7 @@ def _several(name: str, radii: Any) -> tuple[float, ...]:
 
 
 def _drops(drop: Any) -> list[Any]:
-    """The drops of the bodies that have one."""
+    """The drop functions of the bodies that have one, as a list."""
     drops = list(drop) if isinstance(drop, (list, tuple)) else [drop]
     if not all(callable(one) for one in drops):
         raise TypeError("drop has a number; it must be a function of places y, as rollers.crown(...) returns, or one for each body")
@@ -72,7 +72,7 @@ def _drops(drop: Any) -> list[Any]:
 
 
 def _dropped(drop: Drop, y: Doubles) -> Doubles:
-    """The drop at places y, checked, because it may be a function of the caller."""
+    """The drop at places y. The values are checked, because `drop` may be a function of the caller."""
     found = np.asarray(drop(y), dtype=np.float64)
     if found.shape not in ((), y.shape) or np.isnan(found).any():
         what = f"nan at y = {y[np.isnan(found)][0]:g}" if found.shape == y.shape else f"the shape {found.shape}"
@@ -82,24 +82,27 @@ def _dropped(drop: Drop, y: Doubles) -> Doubles:
     return found
 
 
-# The largest tilt, in rad. The gap grows by tilt y, which holds for small angles only.
+# The largest tilt, in rad. The gap is assumed to grow by the tilt times y, which holds for small angles only.
 _STEEPEST = 0.3
 
 
 def circle(x: Any, radius: float) -> Doubles:
-    """The distance of a circle from its tangent, at x from their common point: exact, not a parabola; inf beyond the radius. A negative radius is a hollow."""
+    """The distance of a circle from its tangent at the distance x from their common point; inf beyond the radius.
+
+    It is exact, not the parabola. A negative radius is that of a hollow, and gives negative distances.
+    """
     x, r = np.asarray(x, dtype=np.float64), abs(radius)
     if np.isinf(r):
         return np.zeros_like(x)
     inside = np.abs(x) <= r
     # r - sqrt(r^2 - x^2) without cancellation.
-    left = x**2 / (r + np.sqrt(np.maximum(r**2 - x**2, 0.0)))
-    return np.where(inside, np.copysign(left, radius), np.inf)
+    rise = x**2 / (r + np.sqrt(np.maximum(r**2 - x**2, 0.0)))
+    return np.where(inside, np.copysign(rise, radius), np.inf)
 
 
 @dataclass(frozen=True)
 class _OfRoller:
-    """The drop along a roller of length 2 half. It can be pickled."""
+    """The drop along a roller of length 2 `half`, as a function of y that can be pickled. `shape` computes it from y, `half` and `sizes`."""
 
     half: float
     shape: Callable[..., Doubles]
@@ -123,13 +126,13 @@ def _logarithm(y: Any, half: float, relief: float) -> Doubles:
 
 
 def no_drop(length: float) -> Drop:
-    """The drop of a cylinder with sharp ends. The pressures at its ends grow without bound on finer grids."""
+    """Returns the drop of a cylinder with sharp ends. The pressures at its ends grow without bound on finer grids."""
     half = 0.5 * _positive("length", length)
     return _OfRoller(half, _sharp)
 
 
 def crown(length: float, radius: float, straight: float = 0.0) -> Drop:
-    """The drop of a roller that is crowned by a circular arc.
+    """Returns the drop of a roller that is crowned by a circular arc.
 
     Parameters
     ----------
@@ -150,7 +153,7 @@ def crown(length: float, radius: float, straight: float = 0.0) -> Drop:
 
 
 def logarithmic(length: float, force: float, e_star: float) -> Drop:
-    """The logarithmic profile of Lundberg (1939). Under its design force the pressure is nearly uniform along the roller.
+    """Returns the drop of the logarithmic profile of Lundberg (1939). Under its design force the pressure is nearly uniform along the roller.
 
     drop(y) = force/(pi length E*) ln(1/(1 - (2 y/length)^2))
 
@@ -172,9 +175,9 @@ def logarithmic(length: float, force: float, e_star: float) -> Drop:
 
 
 def iso_16281(length: float, diameter: float) -> Drop:
-    """The profile that ISO/TS 16281:2008 assumes for rollers at most 2.5 times as long as their diameter.
+    """Returns the drop of the profile that ISO/TS 16281:2008 assumes for rollers at most 2.5 times as long as their diameter.
 
-    drop(y) = 0.00035 diameter ln(1/(1 - (2 y/length)^2)). It is Lundberg's profile for a largest pressure of some 3000 N/mm2 between bodies of steel.
+    drop(y) = 0.00035 diameter ln(1/(1 - (2 y/length)^2)). This is Lundberg's profile for a largest pressure of some 3000 N/mm2 between bodies of steel.
     """
     whole, thick = _positive("length", length), _positive("diameter", diameter)
     if whole > 2.5 * thick:
@@ -183,12 +186,15 @@ def iso_16281(length: float, diameter: float) -> Drop:
 
 
 def _warn_of_ends(along: Doubles, cut: float | None, half: float, across: Doubles) -> None:
-    """Warns if the grid ends inside the roller, at y = +-`cut`, where it may touch; and if the gap is smaller at both ends than in the middle."""
+    """Warns of two probable mistakes: the grid ends inside the roller, at y = +-`cut`, where it may touch; the gap is smaller at both ends than in the middle.
+
+    `along` is the undeformed distance along the axis of the roller, `across` that in the rolling direction, and 2 `half` the length of the roller.
+    """
     middle = along[(len(along) - 1) // 2 : len(along) // 2 + 1].min()
     if cut is not None and min(along[0], along[-1]) - middle < _TOUCHED * across.max():
         warnings.warn(f"the grid is {2.0 * cut:g} long in y, and the roller {2.0 * half:g}: nothing touches beyond the grid, whose ends are those of a shorter roller with sharp ends. "
                       "size, length and radii must be in one unit", stacklevel=3)
-    # A groove for a retainer has no surface in the middle.
+    # A roller with a groove for a retainer has no surface in the middle.
     if np.isfinite(middle) and max(along[0], along[-1]) < middle:
         warnings.warn(f"the drop at the ends is {max(along[0], along[-1]) - middle:.3g} beside the middle: it is positive where the roller is thinner", stacklevel=3)
 
@@ -203,7 +209,7 @@ def gap(
     tilt: float = 0.0,
     units: Units = None,
 ) -> Gap:
-    """The gap of two rollers, or of a roller and a raceway, on a grid around the point of first contact.
+    """Returns the gap of two rollers, or of a roller and a raceway, on a grid around the point of first contact.
 
     Parameters
     ----------
@@ -214,8 +220,8 @@ def gap(
     radii : sequence of float
         Radius of each body in the rolling direction; negative: a hollow, as an outer raceway; inf: flat.
     drop : function of an array, or sequence of them
-        Drop of the surface below its cylinder, as a function of places y, of one roller or of each: from `crown`, `logarithmic`, `iso_16281` or `no_drop`, or a
-        function of the caller. inf: no surface.
+        The drop of the surface below its cylinder as a function of places y, for one roller or for each. It comes from `crown`, `logarithmic`, `iso_16281` or
+        `no_drop`, or is a function of the caller. It returns inf where there is no surface.
     crown_radii : sequence of float
         Radii of the bodies along the axis, instead of `drop`; negative: a hollow.
     tilt : float

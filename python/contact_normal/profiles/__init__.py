@@ -1,4 +1,4 @@
-"""Makes a gap from two profiles: a wheel on a rail.
+"""Makes a gap from two profiles, those of a wheel and a rail.
 
 Lengths are in mm, angles in rad, forces in N::
 

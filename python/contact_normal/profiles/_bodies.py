@@ -1,4 +1,4 @@
-"""A track and a wheelset: where their profiles are, and how the wheelset stands on the track."""
+"""The classes `Track`, `Wheelset` and `Position`: where the profiles of rails and wheels are, and how the wheelset stands on the track."""
 
 from __future__ import annotations
 
@@ -15,30 +15,33 @@ from ._profile import Profile
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Rails are inclined by at most 1/20 rad, and wheelsets yaw less. A larger number is a mistake: 40 for 1/40, or degrees.
+# The largest angle in rad. Rails are inclined by at most 1/20, and wheelsets yaw less. A larger number is a mistake, as 40 for 1/40, or an angle in degrees.
 _STEEPEST = 0.5
 
-# All lengths are in mm and of one scale, which may be that of a model. Ratios outside these ranges show mixed units: a gauge is 6 to 20 times the width of
-# a rail in the same unit.
+# All lengths are in mm, and all of one scale, which may be that of a model. Ratios of lengths outside these ranges show mixed units: in one unit, for example,
+# a gauge is 6 to 20 times the width of a rail.
 _GAUGE_OVER_RAIL = 3.5, 100.0
 _BACKS_OVER_WHEEL = (2.0, 80.0)
 _RADIUS_OVER_WHEEL = 0.8
 _HEIGHT_OVER_GAUGE = 0.002
-# The sides of a head are compared at these depths below its top, in mm. A rail that leans to the field side by more than this angle, in rad, is mirrored.
+# Both sides of a rail's head are compared at depths from _SIDES[0] to _SIDES[1] below its top, in mm. A rail that leans to the field side by more than _LEANS,
+# in rad, is probably mirrored.
 _SIDES, _LEANS = (16.0, 32.0), 0.012
-# Largest distance of the tread from z = 0, in mm; of the flange back from the smallest y of a profile with a flange, and of one without.
+# The largest distance of the tread from z = 0, in mm, and that of the flange back from the smallest y of a profile: _BACK with a flange, _BACK_OF_TREAD
+# without.
 _TREAD = 20.0
 _BACK, _BACK_OF_TREAD = 40.0, 120.0
 
-# Behind its tip a flange falls to the back by more than _FALLS of its height. Radii are measured _TAPE mm from the back. There z is 0 to _OFF_TAPE mm, since
-# wear is less: checked for flange heights of _FULL mm only.
+# From its tip to its back a flange falls by more than _FALLS of its height. The radius of a wheel is measured _TAPE mm from the back, where |z| is at most
+# _OFF_TAPE mm because wear is less. This is checked for wheels whose flange is _FULL mm high (least, largest).
 _FALLS, _TAPE, _OFF_TAPE, _FULL = 0.2, 70.0, 6.0, (20.0, 45.0)
-# Wheels narrower than this, in mm, are those of models.
+# Wheels that are narrower than this, in mm, are those of models.
 _WHOLE = 40.0
-# The height of a rail, or of its head, is less than this times its width.
+# The height of a rail, or of its head, is less than this multiple of its width.
 _SLENDER = 1.8
 
-# Flanges are measured 10 mm below the tread, as a part of the radius. The play of a wheelset in the track is some mm, less than _PLAY of the gauge.
+# Flanges are measured at _FACE times the radius below the tread, 10 mm for a radius of 460 mm. The play of a wheelset in the track is some mm, and less than
+# _PLAY times the gauge.
 _FACE, _PLAY = 10.0 / 460.0, 0.05
 
 _UNITS = "lengths are in mm, those of profiles, gauges and radii; profiles.read takes scale=, as 25.4 for a file in inches"
@@ -46,17 +49,17 @@ _UNITS = "lengths are in mm, those of profiles, gauges and radii; profiles.read 
 
 @dataclass(frozen=True)
 class Position:
-    """Where a wheelset stands. x forward, y to the right, z downwards; the origin is at the top of the rails in the middle of the track.
+    """The position of a wheelset on a track. x is forward, y to the right, z downwards; the origin is in the middle of the track, at the top of the rails.
 
     Attributes
     ----------
     y : float
         Shift of the middle of the axle to the right, in mm.
     z : float or None
-        Distance in mm by which the axle is lower than its nominal height, one radius above the top of the rails. None: the wheelset is lowered
-        until the wheel of interest touches.
+        Distance in mm by which the axle is lower than its nominal height, which is one radius above the top of the rails. None: the wheelset is lowered until
+        the wheel of interest touches its rail.
     roll, yaw : float
-        Angles about x (the right side moves down) and about z (the right side moves back), in rad. The wheelset is rolled first.
+        Angles in rad about x (a positive roll moves the right side down) and about z (a positive yaw moves the right side back). The roll is applied first.
     """
 
     y: float = 0.0
@@ -74,13 +77,13 @@ class Position:
                 raise ValueError(f"{name} is {getattr(self, name)}; it is an angle in rad of at most {_STEEPEST}")
 
     def seen_from(self, side: str) -> Position:
-        """This position for the right side, and its mirror image for the left side, so that y grows outwards."""
+        """This position for the right side, its mirror image for the left side. So y grows outwards in both cases."""
         if side not in ("left", "right"):
             raise ValueError(f'side is {side!r}; it must be "left" or "right"')
         return self if side == "right" else Position(-self.y, self.z, -self.roll, -self.yaw)
 
     def rotation(self) -> Doubles:
-        """Turns vectors of the wheelset into those of the track."""
+        """The matrix that converts the components of a vector along the axes of the wheelset to those along the axes of the track."""
         c, s = np.cos([self.roll, self.yaw]), np.sin([self.roll, self.yaw])
         roll = np.array([[1.0, 0.0, 0.0], [0.0, c[0], -s[0]], [0.0, s[0], c[0]]])
         yaw = np.array([[c[1], -s[1], 0.0], [s[1], c[1], 0.0], [0.0, 0.0, 1.0]])
@@ -89,18 +92,18 @@ class Position:
 
 @dataclass(frozen=True)
 class Track:
-    """Two equal rails.
+    """A track of two equal rails.
 
     Attributes
     ----------
     rail : Profile
         The profile of the right rail.
     gauge : float
-        Distance of the gauge points of both rails, in mm.
+        Distance between the gauge points of both rails, in mm.
     gauge_height : float
         How far the gauge points are below the top of the rails, in mm.
     inclination : float
-        Angle in rad by which to incline the profile towards the track, for example 1/40. 0: the profile is drawn inclined.
+        Angle in rad by which the profile is rotated towards the middle of the track, for example 1/40. 0: the profile is already drawn inclined.
     """
 
     rail: Profile
@@ -134,7 +137,7 @@ class Track:
                           "has its inclination", stacklevel=3)
 
     def placed(self) -> Profile:
-        """The right rail in its place: its top at z = 0, its gauge point at half of the gauge."""
+        """The profile of the right rail in coordinates of the track: the top is at z = 0, and the gauge point at half of the gauge."""
         rail = self.rail.rotated(self.inclination)
         curve = rail.curve()
         rail = rail.moved(z=-float(curve.at(curve.between(20))[1].min()))
@@ -148,7 +151,10 @@ class Track:
 
 
 def _lean(rail: Profile) -> float:
-    """The angle in rad by which a rail leans to the track: the slope of the middle of its head over the depth. 0 if the profile lacks a side of the head."""
+    """The angle in rad by which a rail leans towards the middle of the track; 0 if the profile lacks a side of the head.
+
+    It is the slope over the depth of the middle between both sides of the head.
+    """
     top = int(np.argmin(rail.z))
     sides = (rail.y[: top + 1][::-1], rail.z[: top + 1][::-1]), (rail.y[top:], rail.z[top:])
     deepest = min(float(z.max()) for _, z in sides) - float(rail.z[top])
@@ -161,18 +167,18 @@ def _lean(rail: Profile) -> float:
 
 @dataclass(frozen=True)
 class Wheelset:
-    """Two equal wheels on an axle.
+    """A wheelset of two equal wheels on an axle.
 
     Attributes
     ----------
     wheel : Profile
-        The profile of the right wheel; its z is 0 where the radius is `radius`.
+        The profile of the right wheel. Its z is 0 where the radius of the wheel is `radius`.
     radius : float
-        Radius at z = 0 of the profile, in mm.
+        Radius of the wheel at z = 0 of the profile, in mm.
     flange_back : float
-        Distance of the flange backs of both wheels, in mm.
+        Distance between the flange backs of both wheels, in mm.
     flange_back_at : float or None
-        The profile's y of the flange back, in mm; None: its smallest y.
+        The y of the flange back in the profile, in mm; None: the smallest y of the profile.
     """
 
     wheel: Profile
@@ -199,7 +205,7 @@ class Wheelset:
         self._warn_of_origin()
 
     def _warn_of_back(self) -> None:
-        """Warns if the smallest y of the profile is taken for the flange back, but is not."""
+        """Warns if the smallest y of the profile is taken for the flange back, but seems to be another point."""
         if self.flange_back_at is not None:
             return
         tip, end = float(self.wheel.z.max()), float(self.wheel.z[0])
@@ -215,7 +221,7 @@ class Wheelset:
                       "back. Profiles are in mm", stacklevel=4)
 
     def _warn_of_origin(self) -> None:
-        """Warns of a radius that is not that of the tread."""
+        """Warns if the tread is far from z = 0, so that `radius` is not the radius of the tread."""
         at = (float(self.wheel.y[0]) if self.flange_back_at is None else self.flange_back_at) + _TAPE
         if not (self.wheel.y[0] < at < self.wheel.y[-1] and self.wheel.has_flange()):
             return
@@ -225,7 +231,7 @@ class Wheelset:
                           "wheel.moved(z=...) puts the origin on the tread", stacklevel=4)
 
     def _check_back(self) -> None:
-        """Refuses a flange back that is far from the smallest y of the profile."""
+        """Raises an error if the given flange back is far from the smallest y of the profile."""
         if self.flange_back_at is None:
             return
         at, end = number("flange_back_at", self.flange_back_at), float(self.wheel.y.min())
@@ -234,7 +240,7 @@ class Wheelset:
             raise ValueError(f"flange_back_at is {at:g}; it is the y of the back in the profile, whose smallest y is {end:.4g}: {_UNITS}")
 
     def across_flanges(self) -> float | None:
-        """Distance of the outer faces of both flanges, a little below the tread, in mm; None without flanges."""
+        """Distance between the outer faces of both flanges, a little below the tread, in mm; None without flanges."""
         tip = int(np.argmax(self.wheel.z))
         behind = np.flatnonzero(self.wheel.z[tip:] < _FACE * self.radius)
         if not self.wheel.has_flange() or not len(behind):
@@ -248,7 +254,7 @@ class Wheelset:
         return 0.5 * self.flange_back - at
 
     def tread(self) -> Curve:
-        """The right wheel in its place: y from the middle of the axle, and z is the radius."""
+        """The curve of the right wheel in coordinates of the wheelset: y is the distance from the middle of the axle, and z the radius."""
         return self.wheel.moved(y=self.origin, z=self.radius).curve()
 
 
@@ -265,7 +271,7 @@ def warn_of_play(track: Track, wheelset: Wheelset, stacklevel: int) -> None:
 
 
 def _refuse_unless(kind: str, profile: Profile) -> None:
-    """Refuses anything but a profile of this kind."""
+    """Raises an error unless the argument is a profile of this kind."""
     if not isinstance(profile, Profile):
         raise TypeError(f"{kind} is a {type(profile).__name__}; it must be a Profile, as profiles.read(...) returns it")
     if profile.kind != kind:

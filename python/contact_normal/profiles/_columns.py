@@ -1,4 +1,4 @@
-"""Columns of numbers in a text: finds the lines that are points of a profile."""
+"""Reads columns of numbers from a text: finds the lines that are points of a profile."""
 
 from __future__ import annotations
 
@@ -11,35 +11,35 @@ from .._decimal_commas import cut_decimals, has_decimal_commas
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
 
-# Lines that may be points: they begin with a number, or with a mark for a number that does not fit or is unknown.
+# The beginning of lines that may be points: a number, or a mark for a number that is too long for its field (*) or unknown (nan).
 _BEGINS = re.compile(r"\s*(?:[-+]?[.,]?\d|\*|[-+]?(?:nan|inf)\b)", re.IGNORECASE)
-# Letters that no number has mark a title.
+# A letter shows that a line is a title, unless it belongs to a number (_NO_TITLE).
 _LETTERS = re.compile(r"[^\W\d_]")
 _NO_TITLE = re.compile(r"nan|inf|(?<=[\d.])[eEdD](?=[-+\d])", re.IGNORECASE)
-# Marks around numbers.
+# Quotation marks and brackets around numbers are replaced by blanks.
 _BRACKETS = str.maketrans("\"()[]", "     ")
-# At most this many lines of numbers, as counts and dates, may stand before and behind the points.
+# At most this many lines of other numbers, as counts and dates, may stand before and behind the points.
 _OTHERS = 2
 
 
 def to_number(word: str) -> float:
-    """The number of a word that matches `NUMBER`; Fortran's D is an exponent."""
+    """The value of a word that matches `NUMBER`, which may have the exponent letter D of Fortran."""
     return float(re.sub("[dD]", "e", word))
 
 
 def columns_of(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, int]:
-    """Two columns of the lines that are points, and the least number of columns in these lines.
+    """Reads two columns of the lines that are points. Returns them, and the least number of columns in these lines.
 
-    Titles, counts and dates stand before or behind all points. A line of numbers that lacks one of the columns is refused among the points, and several such
-    lines are refused anywhere, because they are points that cannot be read.
+    Titles, counts and dates may stand before and behind all points. A line of numbers that lacks one of the columns is refused if it stands among the points.
+    More than `_OTHERS` such lines are refused anywhere, because they are probably points that cannot be read.
     """
     lines = [line for line in text.translate(_BRACKETS).splitlines() if _BEGINS.match(line)]
     rows: list[list[float]] = []
     commas, width, others, among = has_decimal_commas(lines), 0, list[str](), ""
     behind = ""
-    # A point has two numbers at least, each of two halves.
+    # Lines whose commas may be decimal points although they also separate columns: a point has at least two numbers, each with a decimal comma.
     halves = [line for line in lines if line.count(",") > 2 and ";" not in line]
-    # Beside numbers with points, those such as 0001 are counts and dates.
+    # If other numbers have decimal points, these lines are counts and dates, as 0001.
     if not commas and not any("." in line for line in halves) and (reason := cut_decimals(halves)):
         raise ValueError(f"{path} has {reason}")
     for line in lines:
@@ -65,5 +65,5 @@ def columns_of(text: str, columns: tuple[int, int], path: str | os.PathLike[str]
 
 
 def _words(line: str, commas: bool) -> list[str]:
-    """The columns of a line, separated by blanks, by semicolons and, unless they are decimal points, by commas."""
+    """The cells of a line. They are separated by blanks, by semicolons, and by commas, unless commas are decimal points."""
     return (line.replace(",", ".") if commas else line.replace(",", " ")).replace(";", " ").split()

@@ -1,4 +1,4 @@
-"""Where a wheel touches a rail."""
+"""Finds where a wheel touches a rail."""
 
 from __future__ import annotations
 
@@ -15,24 +15,26 @@ from ._patch import ContactPoint, Pair
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Places between two points of the wheel's curve at which the clearance is computed.
+# The clearance is computed at this number of places from each point of the wheel's curve to the next.
 _BETWEEN = 6
-# An interval around a minimum is divided by 32 points, nine times: it shrinks by 16^9.
+# The interval around a minimum is divided into _PARTS parts, and replaced by the two parts at the least value. After _SECTIONS repetitions it is 16^9 times
+# shorter.
 _SECTIONS, _PARTS = 9, 32
-# Most steps of the secant method for the roll. Each step has about 1.6 times the digits of the one before.
+# The largest number of steps of the secant method for the roll. Each step multiplies the number of correct digits by about 1.6.
 _ROLLS = 40
-# Examples of their arguments, for messages.
+# Examples of the arguments of these classes, for messages.
 _AS = {Track: "rail", Wheelset: "wheel", Position: "y=4.0"}
-# The advice in messages.
+# The advice in messages on a wheel that is not above its rail.
 _BESIDE = ("look at both by plot(): they are in mm, y grows to the field side and z downwards, and one is a wheel, the other a rail; then at the gauge and "
            "the distance of the flange backs")
 
 
 def _lowest(pair: Pair, t: Any) -> tuple[Doubles, Doubles, Doubles]:
-    """The place on each circle of the wheel whose normal has no component along the rail, in coordinates of the track.
+    """The lowest point of each circle of the wheel: that whose normal has no component along the rail. Returns its x, y and z in coordinates of the track.
 
-    Only there can a wheel touch a rail, which is uniform along x. Let e be the radial direction at an angle theta from straight below, and
-    r the radius. Then the normal is e - r' e_y in the wheelset, and its component along x is a sin(theta) + b cos(theta) - c r'.
+    Only there can a wheel touch a rail, which is uniform along x. `t` are the parameters of the circles on the wheel's curve. Let e be the radial direction at
+    an angle theta from straight below the axle, r(y) the radius and e_y the direction of the axle. The normal is e - r' e_y. With the first row (a, c, b) of the
+    rotation its component along the rail is a sin(theta) + b cos(theta) - c r', whose zero theta is computed.
     """
     y, radius, dy, dz = pair.tread.at(t)
     turned = pair.position.rotation()
@@ -45,7 +47,7 @@ def _lowest(pair: Pair, t: Any) -> tuple[Doubles, Doubles, Doubles]:
 
 
 def _clearance(pair: Pair, t: Any) -> Doubles:
-    """Vertical distance of these lowest places from the rail, infinite beside it."""
+    """The vertical distance of the lowest points of the circles `t` from the rail; inf beside the rail."""
     _, y, z = _lowest(pair, t)
     on_rail = pair.rail.where(y, near=pair.rail.t[np.argmin(pair.rail.z)])
     distance = pair.rail.at(np.where(np.isnan(on_rail), 0.0, on_rail))[1] - z
@@ -53,7 +55,7 @@ def _clearance(pair: Pair, t: Any) -> Doubles:
 
 
 def _minima(pair: Pair) -> list[tuple[float, float]]:
-    """Local minima of the clearance along the wheel, the smallest first: clearance and t."""
+    """The local minima of the clearance along the wheel, as pairs of the clearance and the t on the wheel's curve, the smallest clearance first."""
     t = pair.tread.between(_BETWEEN)
     found = _clearance(pair, t)
     inner = np.nonzero((found[1:-1] <= found[:-2]) & (found[1:-1] < found[2:]) & np.isfinite(found[1:-1]))[0] + 1
@@ -80,24 +82,24 @@ def _pair(track: Track, wheelset: Wheelset, position: Position, side: str) -> Pa
 def contact_points(
     track: Track, wheelset: Wheelset, position: Position = Position(), side: str = "right", within: float = 0.0
 ) -> list[ContactPoint]:
-    """Where a wheel touches its rail, or comes closest to it: the local minima of the vertical clearance.
+    """Finds where a wheel touches its rail, or comes closest to it: at the local minima of the vertical clearance.
 
     Parameters
     ----------
     track, wheelset : Track, Wheelset
-        The profiles in their places.
+        The rails, and the wheels on their axle.
     position : Position
         How the wheelset stands on the track. With z = None the wheelset is lowered until this wheel touches.
     side : {"left", "right"}
-        Which wheel.
+        The wheel that is considered.
     within : float
-        A length in mm. Other local minima are returned too if their clearance exceeds the smallest one by at most this length. Loaded wheels may
-        touch there: each place is a patch of its own.
+        A length in mm. Other local minima are returned, too, if their clearance exceeds the smallest one by at most this length. Under load the wheel may touch
+        there as well, with a contact patch at each of these points.
 
     Returns
     -------
     list of ContactPoint
-        The closest one first.
+        The points in the order of their clearance, the smallest first.
 
     Raises
     ------
@@ -128,9 +130,9 @@ def contact_points(
 
 
 def settled(track: Track, wheelset: Wheelset, y: float = 0.0, yaw: float = 0.0) -> Position:
-    """The position in which both wheels touch: height and roll of a wheelset that is shifted and yawed.
+    """Finds the position in which both wheels touch: the height and the roll of a wheelset that is shifted by `y`, in mm, and yawed by `yaw`, in rad.
 
-    The roll is found by the secant method: the roll at which both wheels are lowered by the same length.
+    At this roll both wheels can be lowered by the same length until they touch. The roll is found by the secant method.
     """
 
     def lowered(roll: float) -> tuple[float, float]:
@@ -140,7 +142,7 @@ def settled(track: Track, wheelset: Wheelset, y: float = 0.0, yaw: float = 0.0) 
             raise ValueError(f"y is {y}: one wheel is nowhere above its rail; {_BESIDE}")
         return left[0][0], right[0][0]
 
-    # A roll lowers the right wheel and lifts the left one by half of the distance of the wheels: the first guess of the slope.
+    # The first guess of the slope: a roll lowers the right wheel, and lifts the left one, by the roll times half of the distance between the wheels.
     slope, roll = 2.0 * wheelset.origin, 0.0
     left, right = lowered(roll)
     for _ in range(_ROLLS):

@@ -1,4 +1,4 @@
-"""A smooth curve through the points of a profile: natural cubic splines of y and z over the length of the polygon."""
+"""The class `Curve`: a smooth curve through the points of a profile, by natural cubic splines of y and z over the length of the polygon."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Steps of Newton's method for an inversion. Each doubles the digits; the start, on the polygon, has three.
+# The number of steps of Newton's method in `Curve.where`. Each doubles the number of correct digits; the start, on the polygon, has about three.
 _STEPS = 4
 
 
 def second_derivatives(t: Doubles, values: Doubles) -> Doubles:
-    """Second derivatives at the knots of the natural cubic spline through `values`, by elimination of a tridiagonal system."""
+    """The second derivatives at the knots `t` of the natural cubic spline through `values`, by elimination in a tridiagonal system."""
     n, d = len(t), np.diff(t)
     found = np.zeros(n)
     if n < 3:
@@ -32,14 +32,15 @@ def second_derivatives(t: Doubles, values: Doubles) -> Doubles:
 
 
 class Curve:
-    """A smooth curve (y, z) over t, the length along the polygon of its points; y grows strictly from point to point.
+    """A smooth curve (y, z) whose parameter t is the length along the polygon of its points. y grows strictly from point to point.
 
     Attributes
     ----------
     t, y, z : ndarray, (n,)
-        The points.
+        The parameters and the coordinates of the points.
     open : ndarray, (m, n), or None
-        Possible errors of the points along the normal, if they were smoothed: the form that smoothing removed, and samples of the remaining errors.
+        If the points were smoothed: possible errors of the points along the normal. The first row is the form that smoothing removed, the others are samples of
+        the remaining errors.
     """
 
     def __init__(self, y: Doubles, z: Doubles, is_open: Doubles | None = None) -> None:
@@ -48,12 +49,12 @@ class Curve:
         self._bends = second_derivatives(self.t, y), second_derivatives(self.t, z)
 
     def between(self, count: int) -> Doubles:
-        """Values of t, `count` from each point to the next."""
+        """Parameters t that divide each interval between two points into `count` parts."""
         n = len(self.t)
         return np.asarray(np.interp(np.arange((n - 1) * count + 1) / count, np.arange(n), self.t))
 
     def at(self, t: Any) -> tuple[Doubles, Doubles, Doubles, Doubles]:
-        """y, z and their derivatives by t."""
+        """Returns y, z and their derivatives by t at the parameters `t`."""
         k = np.clip(np.searchsorted(self.t, t, side="right") - 1, 0, len(self.t) - 2)
         d = self.t[k + 1] - self.t[k]
         a, b = (self.t[k + 1] - t) / d, (t - self.t[k]) / d
@@ -65,9 +66,9 @@ class Curve:
         return out[0], out[1], out[2], out[3]
 
     def where(self, along: Any, direction: tuple[float, float] = (1.0, 0.0), near: float = 0.0) -> Doubles:
-        """The t at which `direction` . (y, z) is `along`, by Newton's method from the polygon; NaN if there is none.
+        """Returns the t at which the scalar product of `direction` and (y, z) is `along`, by Newton's method from the polygon; NaN if there is none.
 
-        Only the part of the curve around the point at t = `near` is searched on which this product grows from point to point.
+        Only a part of the curve is searched: that around the point at t = `near` on which this product grows from point to point.
         """
         wanted = np.asarray(along, dtype=np.float64)
         places = direction[0] * self.y + direction[1] * self.z
@@ -81,7 +82,7 @@ class Curve:
 
 
 def growing(places: Doubles, middle: int) -> tuple[int, int]:
-    """The first and the last index of the run around `middle` in which each place is larger than the one before."""
+    """The first and the last index of the longest range around the index `middle` in which each value is larger than the one before."""
     stops = np.flatnonzero(~(np.diff(places) > 0.0))
     k = int(np.searchsorted(stops, middle))
     first = int(stops[k - 1]) + 1 if k > 0 else 0

@@ -1,4 +1,4 @@
-"""The place where a wheel touches a rail: angle, rolling radius, gap, creepages, forces."""
+"""The class `ContactPoint`: the place where a wheel touches a rail, with its angle, rolling radius, gap, creepages and forces."""
 
 from __future__ import annotations
 
@@ -22,29 +22,32 @@ if TYPE_CHECKING:
     from .._arguments import Doubles
     from .._result import Result
 
-# Most steps of Newton's method for a distance along the normal. Each step doubles the digits. The start has an error by the curvature of the wheel only, so two
-# or three steps suffice in most cases. A step of less than _TIGHT of the radius is the last one.
+# The largest number of steps of Newton's method for a distance along the normal. Each step doubles the number of correct digits. The start has an error only by
+# the curvature of the wheel, so that two or three steps suffice in most cases. The last step is one of less than _TIGHT times the radius.
 _STEPS, _TIGHT = 8, 1e-13
-# Places that are computed at a time: some megabytes.
+# The number of places whose distances are computed at a time. Arrays for them have some megabytes.
 _BLOCK = 1 << 16
-# A grid is made for _RESERVE times the approach, and made again if it was made for more than _LOOSE times the approach.
+# A grid is made for an approach of _RESERVE times the last one. A grid that was made for more than _LOOSE times the approach is made again, smaller.
 _LOOSE, _RESERVE = 1.5, 1.1
-# A larger approach, relative to the rolling radius, shows mixed units.
+# An approach of more than this part of the rolling radius shows mixed units.
 _DEEPEST = 0.05
-# A grid that cannot carry the force is made again for an approach that is larger by this factor.
+# If the elements of a grid cannot carry the force, the grid is made again for an approach that is larger by this factor.
 _DEEPER = 4.0
-# The grid of a patch has at most this many elements on each side of the contact point; the first one that is tried.
+# The number of elements of a grid on each side of the contact point: at most _FARTHEST, and at first _LEAST.
 _FARTHEST = 1024
 _LEAST = 8
 
 
 class _Late(Exception):
-    """No time is left."""
+    """Raised while a grid is computed if no time is left."""
 
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """A rail and a wheel in their places, mirrored for the left side: y outwards, z downwards."""
+    """A rail and a wheel in their positions, mirrored for the left side, so that y grows outwards. z is downwards.
+
+    `tread` is the curve of the wheel in coordinates of the wheelset, and `radius` its nominal radius.
+    """
 
     rail: Curve
     tread: Curve
@@ -60,20 +63,20 @@ class Pair:
 
 @dataclass(frozen=True, eq=False)
 class ContactPoint:
-    """Where a wheel touches a rail.
+    """A point at which a wheel touches a rail, or comes close to it.
 
-    The patch has coordinates of its own, whose origin is this point: x forward along the rail, y along the surface of the rail towards the field
-    side, and the normal from the rail into the wheel. The wheel is body 1, the rail body 2.
+    The contact patch has coordinates whose origin is this point: x is forward along the rail, y along the surface of the rail towards the field side, and the
+    normal points from the rail into the wheel. The wheel is body 1, the rail body 2.
     """
 
     _pair: Pair
     _x: float
     _on_rail: float
     _on_wheel: float
-    # Clearance, y and z of the other places where the wheel is close to the rail.
+    # The clearance, y and z of the other local minima of the clearance.
     _others: tuple[tuple[float, float, float], ...]
     clearance: float
-    """Vertical distance of both surfaces here, in mm. It is 0 if they touch, and negative if the position lets them overlap."""
+    """Vertical distance of both surfaces at this point, in mm. It is 0 if they touch, and negative if they overlap in the given position."""
 
     def __repr__(self) -> str:
         x, y, z = self.place
@@ -82,39 +85,41 @@ class ContactPoint:
 
     @property
     def place(self) -> tuple[float, float, float]:
-        """x forward, y to the right, z downwards, in mm, from the top of the rails in the middle of the track; on the rail."""
+        """The coordinates of this point on the rail, in mm: x forward, y to the right, z downwards, from the middle of the track at the top of the rails."""
         y, z, _, _ = (float(value) for value in self._pair.rail.at(self._on_rail))
         return self._x, (y if self._pair.side == "right" else -y), z
 
     @property
     def position(self) -> Position:
-        """Where the wheelset stands, with the height that was found."""
+        """The position of the wheelset, with the height that was found."""
         seen = self._pair.position
         return seen if self._pair.side == "right" else Position(-seen.y, seen.z, -seen.roll, -seen.yaw)
 
     @property
     def angle(self) -> float:
-        """The contact angle in rad, by which the surface of the rail rises towards the field side. At the flange it is large and positive."""
+        """The contact angle in rad: the angle by which the surface of the rail rises towards the field side. At the flange it is large and positive."""
         _, _, dy, dz = self._pair.rail.at(self._on_rail)
         return float(np.arctan2(-dz, dy))
 
     @property
     def rolling_radius(self) -> float:
-        """Distance of the point of the wheel from the axle, in mm."""
+        """Distance of this point on the wheel from the axle, in mm."""
         return float(self._pair.tread.at(self._on_wheel)[1])
 
     def _axes(self) -> Doubles:
-        """The unit vectors of the patch, in coordinates of the track that are mirrored for the left side: x, y, normal."""
+        """The unit vectors x, y and normal of the patch as rows, in coordinates of the track, which are mirrored for the left side."""
         c, s = np.cos(self.angle), np.sin(self.angle)
         return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, -s, -c]])
 
     def distance(self, x: Any, y: Any) -> Doubles:
-        """The undeformed distance along the normal at places of the patch, in mm: positive where the wheel is above the rail, inf beside one of them.
+        """Computes the undeformed distance along the normal at places of the patch, in mm.
+
+        It is positive where the wheel is above the rail, and inf beside the rail or the wheel.
 
         Parameters
         ----------
         x, y : array_like, (mx,) and (my,)
-            Places in coordinates of the patch, in mm.
+            Coordinates of the places in the patch, in mm.
 
         Returns
         -------
@@ -123,7 +128,7 @@ class ContactPoint:
         return self._distance(np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64), lambda: False)
 
     def _distance(self, x: Doubles, y: Doubles, is_over: Callable[[], bool]) -> Doubles:
-        """The same; raises _Late between two blocks of rows once no time is left."""
+        """Computes `distance`; raises `_Late` between two blocks of rows if `is_over()`."""
         pair, (_, ey, normal) = self._pair, self._axes()
         origin = np.array([self._x, *(float(value) for value in pair.rail.at(self._on_rail)[:2])])
         # The rail is uniform along x.
@@ -140,7 +145,10 @@ class ContactPoint:
         return found
 
     def _to_wheel(self, origin: Doubles, x: Doubles, y: Doubles) -> Doubles:
-        """The n at which origin + x ex + y ey + n normal lies on the wheel's surface, whose distance from the axle is the radius there."""
+        """The distance n along the normal at which origin + x ex + y ey + n normal lies on the surface of the wheel, by Newton's method; inf beside the wheel.
+
+        `origin` is the origin of the patch relative to the middle of the axle. On the surface the distance from the axle equals the radius of the wheel there.
+        """
         pair, (ex, ey, normal) = self._pair, self._axes()
         turned = pair.position.rotation()
         base = (origin + x[None, :, None] * ex + y[:, None, None] * ey) @ turned
@@ -160,15 +168,16 @@ class ContactPoint:
         return n
 
     def gap(self, dx: float, dy: float, depth: float) -> Gap:
-        """The undeformed distance on a grid of elements of dx by dy, in mm, as large as a contact with an approach of `depth` can need.
+        """Returns the undeformed distance on a grid that is large enough for any contact with an approach of `depth`. Lengths are in mm.
 
-        Pressures >= 0 displace by u >= 0, so h - approach + u = 0 needs h <= approach: an element whose distance exceeds the least one by more than
-        `depth` cannot touch. The grid has one row and one column of such elements on each side. The contact point is the centre of an element.
+        The elements are dx by dy large, and the contact point is the centre of one of them. Pressures >= 0 cause displacements u >= 0, so that contact,
+        h - approach + u = 0, requires h <= approach. Therefore an element whose distance exceeds the least one by more than `depth` cannot touch. The grid has
+        one row and one column of such elements on each side.
         """
         return self._gap(dx, dy, depth, lambda: False)
 
     def _gap(self, dx: float, dy: float, depth: float, is_over: Callable[[], bool]) -> Gap:
-        """The same; raises _Late once no time is left."""
+        """Computes `gap`; raises `_Late` if `is_over()`."""
         dx, dy, depth = number("dx", dx), number("dy", dy), number("depth", depth)
         for name, value in (("dx", dx), ("dy", dy), ("depth", depth)):
             if not 0.0 < value < np.inf:
@@ -179,7 +188,7 @@ class ContactPoint:
                 raise ValueError(f"depth is {depth}: the grid would need more than {2 * _FARTHEST} elements of {dx} x {dy} in a direction")
             k = np.arange(-reach, reach + 1)
             x, y = np.asarray(k * dx, dtype=np.float64), np.asarray(k * dy, dtype=np.float64)
-            # Both axes first: they show most grids that are too small.
+            # The distances along both axes are computed first, because they show most grids that are too small.
             ahead, aside = self._distance(x, np.zeros(1), is_over)[0], self._distance(np.zeros(1), y, is_over)[:, 0]
             if min(ahead[0], ahead[-1], aside[0], aside[-1]) >= min(ahead.min(), aside.min()) + depth:
                 h = self._distance(x, y, is_over)
@@ -194,7 +203,10 @@ class ContactPoint:
     def press(
         self, force: float, dx: float, dy: float, *, depth: float = 0.01, friction: dict[str, Any] | None = None, **scene: Any
     ) -> tuple[Gap, Result]:
-        """Presses wheel and rail together by a force along the normal: the gap, on a grid as large as needed, and the result.
+        """Presses wheel and rail together by a force along the normal. Returns the gap, on a grid as large as needed, and the result.
+
+        There is a warning if the wheel would also touch at another place, which is not in the grid, and another one if the points of the profiles are too few
+        or too noisy to determine the pressures to 5 %.
 
         Parameters
         ----------
@@ -203,16 +215,13 @@ class ContactPoint:
         dx, dy : float
             Element sizes, in mm.
         depth : float
-            First guess of the approach, in mm. The grid is made anew until `depth` is 1 to 1.5 times the approach that is found.
-            A warning tells if the wheel would also touch at another place, which is not in the grid, and if the points of the profiles are too few or
-            too noisy to tell the pressures to 5 %.
+            First guess of the approach, in mm. The grid is made again until it is made for 1 to 1.5 times the approach that is found.
         friction : dict, optional
-            As that of `contact_normal.solve`. Its spin is about the contact point.
+            As that of `contact_normal.solve`. By default the spin turns about the contact point. The problem with friction is solved last.
         **scene
-            Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all grids and solves together, except
-            that the first grid is always finished. The solve of friction is the last one. A solve that is cancelled, or ended by this limit, is the
-            result, and no other one follows. If no time is left for the next solve, the one before is the result. Its `status` is then
-            `ITERATION_LIMIT`, and its `message` says what is missing.
+            Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` limits the time of all grids and solves together; only the first
+            grid is always finished. A solve that is cancelled, or ended by this limit, is the result, and no other one follows. If no time is left for the next
+            solve, the last result is returned, with the `status` `ITERATION_LIMIT` and a `message` on what is missing.
         """
         may_shrink, limit = True, TimeLimit(scene)
         gap = self.gap(dx, dy, depth)
@@ -220,7 +229,7 @@ class ContactPoint:
             try:
                 result = gap.solve(force=force, **{**scene, **limit.left})
             except ContactNormalError as error:
-                # With a pressure_limit the elements of a grid that is too small cannot carry the force.
+                # With a pressure_limit the force may be too large for the elements of a grid that is too small.
                 deeper = _DEEPER * depth
                 if error.status != INFEASIBLE or "pressure_limit" not in scene or deeper > _DEEPEST * self.rolling_radius:
                     raise
@@ -236,11 +245,11 @@ class ContactPoint:
                 raise ValueError(f"wheel and rail approach by {approach:.3g} mm, more than {_DEEPEST:g} of the rolling radius: "
                                  "forces are in N, moduli in N/mm2")
             if not approach > depth:
-                # Once is enough: a smaller grid may lack a second patch that carried a part of the force.
+                # A grid is made smaller only once, because a smaller grid may lack a second patch that carries a part of the force.
                 if not may_shrink or not depth > _LOOSE * approach > 0.0:
                     break
                 may_shrink = False
-            # A grid that is too small finds a larger approach than there is.
+            # On a grid that is too small the approach is too large, so that a grid for this approach is large enough.
             try:
                 anew = self._gap(dx, dy, _RESERVE * approach, limit.is_over)
             except _Late:
@@ -269,9 +278,9 @@ class ContactPoint:
         self, speed: float, *, pitch_rate: float | None = None, yaw_rate: float = 0.0, roll_rate: float = 0.0,
         lateral_speed: float = 0.0, vertical_speed: float = 0.0,
     ) -> tuple[float, float, float]:
-        """Creepages xi, eta and the spin phi at this point: the velocity of the wheel relative to the rail over `speed`.
+        """Computes the creepages xi, eta and the spin phi at this point: the velocity of the wheel relative to the rail, divided by `speed`.
 
-        xi is along x of the patch, eta along y, and phi in rad/mm turns x towards y, as `friction` of `contact_normal.solve` takes them for
+        xi is along x of the patch, eta along y, and phi, in rad/mm, turns x towards y. They can be used as `friction` of `contact_normal.solve` for
         `STEADY_ROLLING`: `dict(creepage=(xi, eta), spin=phi)`.
 
         Parameters
@@ -279,9 +288,9 @@ class ContactPoint:
         speed : float
             Forward speed of the wheelset, in mm/s.
         pitch_rate : float, optional
-            Rate of rotation about the axle, in rad/s, positive; by default that of pure rolling on the nominal radius.
+            Rate of rotation about the axle, in rad/s, positive for forward rolling; by default that of pure rolling on the nominal radius.
         yaw_rate, roll_rate : float
-            Rates of the angles of the position, in rad/s.
+            Rates of change of the yaw and the roll of the position, in rad/s.
         lateral_speed, vertical_speed : float
             Speeds of the middle of the axle to the right and downwards, in mm/s.
         """
@@ -292,7 +301,7 @@ class ContactPoint:
         turned, seen = pair.position.rotation(), pair.position
         ahead = np.array([np.cos(seen.yaw), np.sin(seen.yaw), 0.0])
         rate = speed / pair.radius if pitch_rate is None else number("pitch_rate", pitch_rate)
-        # z is downwards: a wheel that rolls forward turns from z to x, backwards about y.
+        # z is downwards, so a wheel that rolls forward turns about y in the negative direction.
         spin = -rate * turned[:, 1] + sign * (number("roll_rate", roll_rate) * ahead + number("yaw_rate", yaw_rate) * np.array([0.0, 0.0, 1.0]))
         axle_speed = np.array([speed, sign * number("lateral_speed", lateral_speed), number("vertical_speed", vertical_speed)])
         place = np.array([self._x, *(float(value) for value in pair.rail.at(self._on_rail)[:2])])
@@ -303,7 +312,7 @@ class ContactPoint:
         return xi, eta, phi
 
     def force_on_wheel(self, result: Result) -> tuple[float, float, float]:
-        """The force of a result on the wheel, in N: forward, to the right, downwards."""
+        """The components of the contact force of a result on the wheel, in N: forward, to the right, downwards."""
         if isinstance(result, tuple):
             raise TypeError("result is a tuple; it must be a Result, the second one of what press(...) returns: gap, result = point.press(...)")
         x, y = result.tangential_force

@@ -1,4 +1,4 @@
-"""Symmetric systems with five diagonals, in a time proportional to their size."""
+"""Solves symmetric systems with five diagonals, in a time proportional to their size."""
 
 from __future__ import annotations
 
@@ -11,9 +11,10 @@ if TYPE_CHECKING:
 
 
 def solve(diagonal: Doubles, first: Doubles, second: Doubles, right: Doubles) -> Doubles:
-    """x of M x = right, for a positive definite M with `diagonal`, and with `first` and `second` beside it on both sides.
+    """Solves M x = right for a positive definite matrix M with the main `diagonal`, and the diagonals `first` and `second` above and below it.
 
-    M = L D L' (Golub and Van Loan, section 4.3), where L has ones on its diagonal, and two diagonals below. Python's numbers are faster in a loop than numpy's.
+    M is factorised as L D L' (Golub and Van Loan, section 4.3), where L has ones on its diagonal and two diagonals below. The loops use lists, because numbers
+    of Python are faster in a loop than those of numpy.
     """
     n = len(diagonal)
     m0, m1, m2 = diagonal.tolist(), [*first.tolist(), 0.0], [*second.tolist(), 0.0, 0.0]

@@ -1,4 +1,4 @@
-"""Points of the cross-section of a wheel or a rail."""
+"""The class `Profile`: points of the cross-section of a wheel or a rail."""
 
 from __future__ import annotations
 
@@ -21,52 +21,52 @@ if TYPE_CHECKING:
 
     from .._arguments import Doubles
 
-# Steeper faces are cut: z is needed as a function of y. Flanges are at most 75 degrees.
+# Faces that are steeper than this are cut off the curve, because z must be a function of y. Flanges are inclined by at most 75 degrees.
 STEEPEST = np.deg2rad(85.0)
 
-# No profile is this large, in mm. A point further than this from the median is a fill value.
+# A point that is farther than this from the median, in mm, is a fill value: no profile is so large.
 _FAR = 500.0
 
-# Curvatures of wheels and rails are up to 0.1 per mm. 1 um of noise on points 0.1 mm apart changes them by 0.3 from point to point.
+# If the curvature changes by more than this from point to point, in 1/mm, the points have noise. Wheels and rails have curvatures of up to 0.1 per mm; noise of
+# 1 um on points 0.1 mm apart changes the curvature by 0.3 per mm from point to point.
 _ROUGH = 0.1
 
-# Least and largest height of a flange above the tread, in mm.
+# The least and the largest height of a flange above the tread, in mm.
 _FLANGE, _HIGHEST = 12.0, 45.0
 
-# From one point to the next, y never decreases by more than this part of the width of a profile.
+# From one point to the next y must not decrease by more than this part of the width of the profile.
 _BACKWARDS = 0.3
 
-# A tread is lower on the side of the flange, or it is level within this length, in mm.
+# A tread is lower (z is larger) on the side of the flange than on the field side, or both are equal within this length, in mm.
 _LEVEL = 0.05
 
-# Points closer than this, in mm, count as one: their directions are round-off of a file of eight digits.
+# Points that are closer than this, in mm, count as one: the direction from one to the other is round-off of a file with eight digits.
 CLOSEST = 1e-3
 
-# Beyond a steep face the next points lie above or below it. If one of this many points lies mainly beside it, the
-# profile continues there, and the points are out of order.
+# Beyond a steep face the next points lie above or below its end. If one of the next _BEHIND points lies mainly beside it, the profile continues there, and the
+# points are out of order.
 _BEHIND = 5
 
-# If an outlier is left out, the profile continues smoothly: the cosine of each change of direction exceeds this.
+# A profile without an outlier is smooth: the cosine of each change of direction exceeds this.
 _AHEAD = 0.9
 
-# The distance of a spike from the line through its neighbours exceeds this length, in mm, and this multiple of the
-# median distance of this many points around it.
+# The distance of a spike from the line through its neighbours exceeds _SPIKE mm, and _TIMES the median of this distance for _AROUND points around it.
 _SPIKE, _TIMES, _AROUND = 0.03, 10.0, 12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Profile(Short):
-    """Points of the cross-section of a wheel or a rail, on the right-hand side of a track.
+    """The points of the cross-section of a wheel or a rail on the right-hand side of a track.
 
-    y grows outwards, from the middle of the track to the field side, z grows downwards, and the points are in the order of growing y along the tread or the
-    head. So the flange of a wheel is at the smallest y and points to large z; the top of a rail has the smallest z.
+    y grows outwards, from the middle of the track to the field side, and z grows downwards. The points are in the order of growing y along the tread or the
+    head. So the flange of a wheel is at the smallest y and points to large z, and the top of a rail has the smallest z.
 
     Attributes
     ----------
     y, z : ndarray, (n,)
-        The points, in mm.
+        The coordinates of the points, in mm.
     kind : {"wheel", "rail"}
-        Wheel or rail.
+        Whether the profile is that of a wheel or of a rail.
     name : str
         The name in messages and pictures.
     """
@@ -98,11 +98,11 @@ class Profile(Short):
         return self.name or f"the {self.kind}"
 
     def has_flange(self) -> bool:
-        """Whether the points are those of a wheel with its flange, not of a tread only."""
+        """Whether the profile is that of a wheel with its flange, and not of a tread only."""
         return self.kind == "wheel" and bool(max(np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)) >= _FLANGE)
 
     def _check_orientation(self) -> None:
-        """Refuses a profile that is upside down, reversed or mirrored, because its contact would be wrong."""
+        """Raises an error if the profile is upside down, reversed or mirrored, because its contact would be wrong."""
         if self.y[0] > self.y[-1]:
             raise ValueError(f"{self._title()} begins at the larger y; its points must be in the order of growing y: y[::-1] and z[::-1]")
         k = int(np.argmin(np.diff(self.y)))
@@ -111,7 +111,7 @@ class Profile(Short):
                              "them; or sort the points")
         above, below = np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)
         if self.kind == "wheel":
-            # The lowest or highest place of a tread without a flange may be a chamfer; the radius of the tread grows towards the flange.
+            # The extremes of a tread without a flange may be those of a chamfer, so the means of both halves are compared: the radius grows towards the flange.
             if not self.has_flange():
                 inner = self.y < 0.5 * (self.y[0] + self.y[-1])
                 if inner.any() and not inner.all() and self.z[~inner].mean() > self.z[inner].mean() + _LEVEL:
@@ -128,11 +128,14 @@ class Profile(Short):
             raise ValueError(f"{self._title()} has its top at the largest z; z must grow downwards: upside_down=True")
 
     def moved(self, y: float = 0.0, z: float = 0.0) -> Profile:
-        """The profile moved by y and z, in mm."""
+        """Returns the profile moved by `y` and `z`, in mm."""
         return self._with(self.y + number("y", y), self.z + number("z", z), self._open)
 
     def rotated(self, angle: float) -> Profile:
-        """The profile rotated about the origin by an angle in rad. A rail with an inclination of 1:40 is rotated by 1/40: its top moves towards the track."""
+        """Returns the profile rotated about the origin by an angle in rad.
+
+        For an inclination of 1:40 a rail is rotated by 1/40: its top moves towards the middle of the track.
+        """
         c, s = np.cos(number("angle", angle)), np.sin(angle)
         return self._with(c * self.y + s * self.z, c * self.z - s * self.y, self._open)
 
@@ -143,12 +146,10 @@ class Profile(Short):
         return made
 
     def smoothed(self, wave_length: float) -> Profile:
-        """Removes waves shorter than a length, in mm. Use it for measured profiles, where noise would change the
-        contact.
+        """Returns the profile without waves that are shorter than a length, in mm. Use it for measured profiles, whose noise would change the contact.
 
-        y and z, as functions of the length along the polygon, become smoothing splines (Reinsch 1967). They multiply
-        the height of a wave of length L by 1/(1 + (wave_length/L)^4). Steep faces, which `curve` cuts off, are not
-        smoothed.
+        y and z, as functions of the length along the polygon, become smoothing splines (Reinsch 1967). A smoothing spline multiplies the height of a wave of
+        length L by 1/(1 + (wave_length/L)^4). Steep faces, which `curve` cuts off, are not smoothed.
         """
         length = number("wave_length", wave_length)
         if not length > 0.0:
@@ -164,11 +165,10 @@ class Profile(Short):
         return self._with(points[0], points[1], is_open)
 
     def thinned(self, step: float) -> Profile:
-        """Averages the points of each `step`, in mm, along the profile. Use it for scans whose noise exceeds the
-        distance of their points.
+        """Returns the profile with one point, the mean, for each `step` along it, in mm. Use it for scans whose noise exceeds the distance of their points.
 
-        A step contains the points, in their order, within `step` of its first point. Choose a `step` of several times
-        the noise, and of at most a tenth of the width of the contact. Both end points are kept.
+        A step contains the points, in their order, that are within `step` of its first point. Choose a `step` of several times the noise, and of at most a
+        tenth of the width of the contact. Both end points of the profile are kept.
         """
         length = number("step", step)
         if not length > 0.0:
@@ -187,7 +187,7 @@ class Profile(Short):
         return self._with(y, z, is_open)
 
     def _usable(self) -> Any:
-        """Indices of the points of the curve: from the tread or the top to the first steep face on either side."""
+        """The indices of the points that the curve uses: from the middle of the tread, or the top of the rail, to the first steep face on either side."""
         points, apart = list(zip(self.y.tolist(), self.z.tolist())), [0]
         for k, point in enumerate(points):
             if math.dist(point, points[apart[-1]]) >= CLOSEST:
@@ -207,13 +207,15 @@ class Profile(Short):
         return np.array(apart[first : last + 1])
 
     def _check_face(self, y: Doubles, z: Doubles, end: int, way: int) -> None:
-        """Refuses an end without a steep face. `way` is the direction along the points (1 or -1) in which the profile
-        continues."""
+        """Raises an error if the curve ends at the point `end` because of an outlier, and not at a steep face.
+
+        `way` is the direction along the points, 1 or -1, in which the profile goes on beyond the end.
+        """
         beyond = end + way * np.arange(1, _BEHIND + 1)
         beyond = beyond[(beyond >= 0) & (beyond < len(y))]
         if (way * (y[beyond] - y[end]) > np.abs(z[beyond] - z[end])).any():
             self._refuse_point(y, z, beyond[0], end)
-        # A flange is steep itself, so an outlier on it looks like a steep face.
+        # On a flange, which is steep itself, an outlier looks like a steep face. It is found if the profile without this point is smooth.
         for off, beside in ((end + way, end), (end, end + way)):
             k = off + way * np.array([-2, -1, *range(1, _BEHIND + 1)])
             if k.min() < 0 or k.max() >= len(y):
@@ -221,8 +223,8 @@ class Profile(Short):
             steps = np.stack([way * np.diff(y[k]), np.diff(z[k])])
             lengths = np.hypot(*steps)
             steps /= lengths
-            # The distance of the point from the line through its neighbours, and the noise: the median distance of the
-            # next points from the direction of the step before.
+            # `far` is the distance of the point from the line through its neighbours. The noise is the median distance of the next points from the direction of
+            # the step before them.
             far = abs(steps[0, 1] * (z[off] - z[k[1]]) - way * steps[1, 1] * (y[off] - y[k[1]]))
             noise = np.median(np.abs(steps[0, 1:] * steps[1, :-1] - steps[1, 1:] * steps[0, :-1]) * lengths[1:])
             goes_on = (steps[0] > np.abs(steps[1]) / np.tan(STEEPEST)).all() and ((steps[:, 1:] * steps[:, :-1]).sum(axis=0) > _AHEAD).all()
@@ -230,28 +232,29 @@ class Profile(Short):
                 self._refuse_point(y, z, off, beside)
 
     def _refuse_point(self, y: Doubles, z: Doubles, k: int, beside: int) -> None:
-        """Refuses a point that is out of order beside another one."""
+        """Raises an error on the point `k`, which is out of order beside the point `beside`."""
         raise ValueError(f"{self._title()} has a point out of order, or far off, at y = {y[k]:.6g}, z = {z[k]:.6g}, beside "
                          f"y = {y[beside]:.6g}, z = {z[beside]:.6g}; from point to point y must grow but at steep faces, behind which the profile ends: "
                          "sort the points, or leave this one out; where points are closer to each other than their noise, thinned(step) takes the mean of "
                          "each step in mm")
 
     def spikes(self) -> Any:
-        """Indices of spikes: single points that stand out, such as dust or faults of the measurement. The distance of a
-        spike from the line through its neighbours exceeds .03 mm, and ten times the median distance of the points
-        around it. Both neighbours deviate to the other side."""
+        """Returns the indices of spikes: single points that stand out, such as dust or faults of the measurement.
+
+        The distance of a spike from the line through its neighbours exceeds 0.03 mm, and ten times the median of this distance for the points around it. Both
+        neighbours deviate to the other side.
+        """
         return self._spikes(self._usable())
 
     def _spikes(self, chosen: Any) -> Any:
-        """The spikes among the chosen points."""
+        """The indices of the spikes among the points `chosen`, which are indices, too."""
         y, z = self.y[chosen], self.z[chosen]
         if len(y) < _AROUND:
             return chosen[:0]
         weight = (y[1:-1] - y[:-2]) / (y[2:] - y[:-2])
         off = z[1:-1] - (1.0 - weight) * z[:-2] - weight * z[2:]
         found = []
-        # Few points deviate so far. Medians are computed for these points only, because each step of a search makes the
-        # curves again.
+        # Few points deviate so far. Medians are computed for these points only, because a search for the position of a wheelset makes the curves in each step.
         for k in np.flatnonzero(np.abs(off[1:-1]) > _SPIKE) + 1:
             around = np.abs(off[max(0, k - _AROUND // 2) : k + _AROUND // 2 + 1])
             stands_out = abs(off[k]) > _TIMES * float(np.median(around))
@@ -260,8 +263,10 @@ class Profile(Short):
         return chosen[found]
 
     def curve(self) -> Curve:
-        """The smooth curve through the points, without vertical faces: natural cubic splines over the length of the polygon. Warns of `spikes`, and of noise
-        that bends the curve."""
+        """Returns the smooth curve through the points, without steep faces: natural cubic splines over the length of the polygon.
+
+        Warns of `spikes`, and of noise that bends the curve.
+        """
         chosen = self._usable()
         if len(chosen) < 4:
             raise ValueError(f"{self._title()} has {len(chosen)} points between its steep faces; at least 4 are needed. A profile is in mm, its points "
@@ -275,8 +280,7 @@ class Profile(Short):
         return Curve(self.y[chosen], self.z[chosen], None if self._open is None else self._open[:, chosen])
 
     def _roughness(self, chosen: Any) -> float:
-        """The median change of the curvature from point to point. It measures noise: without noise the curvature
-        changes slowly."""
+        """The median change of the curvature from point to point, in 1/mm. It is a measure of noise: without noise the curvature changes slowly."""
         y, z = self.y[chosen], self.z[chosen]
         d = np.diff(y)
         if len(y) < _AROUND or not (d > 0.0).all():

@@ -1,6 +1,6 @@
-"""Profiles from files: SIMPACK's .prr and .prw, MiniProf's .ban and .whl, plain columns.
+"""Reads profiles from files: .prr and .prw of SIMPACK, .ban and .whl of MiniProf, plain columns.
 
-Each reader was written from the public description of its format, and from comments in such files.
+Each reader follows the public description of its format, and comments in such files.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ._columns import columns_of
 from ._profile import Profile
 from ._simpack import points_of
 
-# Kinds by the endings of file names; .ban is Danish for a track.
+# The kind of profile for each ending of file names. (Bane is Danish for a track.)
 _KINDS = {".prr": "rail", ".prw": "wheel", ".ban": "rail", ".whl": "wheel"}
 _UPSIDE_DOWN = ".ban", ".whl"
 
@@ -37,24 +37,27 @@ def read(
     Parameters
     ----------
     path : str or path
-        `.prr` and `.prw` are read as rails and wheels of SIMPACK. `.ban` and `.whl` are read as files of MiniProf: columns of numbers below lines `NAME=value`,
-        with `ColumnDef=` naming X and Y. All other files are read as columns of numbers. Lines that do not begin with a number are skipped; other lines among
-        the points must be points.
+        The file. The format is that of its ending:
+
+        - `.prr`, `.prw`: rails and wheels of SIMPACK.
+        - `.ban`, `.whl`: rails and wheels of MiniProf, columns of numbers below lines `NAME=value`, of which `ColumnDef=` names the columns X and Y.
+        - All others: columns of numbers. Lines that do not begin with a number are skipped. Among the points every line that begins with a number must be a
+          point.
     kind : {"wheel", "rail"}, optional
-        Wheel or rail; by default by the ending of the file name.
+        Whether the profile is that of a wheel or of a rail; by default the ending of the file name decides.
     columns : (int, int)
-        The columns of y and z.
+        The columns of y and z, counted from 0.
     mirror : bool
         Whether y grows towards the middle of the track in the file.
     upside_down : bool, optional
         Whether z grows upwards in the file; by default for `.ban` and `.whl` only.
     scale : float
-        Millimetres per unit of the file. The header of `.prr` and `.prw` has its own unit, which is used as well.
+        Millimetres per unit of the file. For `.prr` and `.prw` the unit of their header is used in addition.
 
     Returns
     -------
     Profile
-        In mm, in its own coordinates: `Track` and `Wheelset` place it.
+        The profile in mm, in the coordinates of the file. `Track` and `Wheelset` put it in its place.
 
     Raises
     ------
@@ -90,7 +93,7 @@ def read(
 
 
 def _checked(columns: Any) -> tuple[int, int]:
-    """Two columns."""
+    """Checks the argument `columns` of `read`, and returns it as two integers."""
     if isinstance(columns, str) or np.ndim(columns) != 1 or len(columns) != 2:
         raise TypeError(f"columns is {columns!r}; it must be two numbers, those of y and z, counted from 0")
     first, second = (integer(f"columns[{k}]", column) for k, column in enumerate(columns))
@@ -100,14 +103,17 @@ def _checked(columns: Any) -> tuple[int, int]:
 
 
 def _defined(text: str, else_: tuple[int, int]) -> tuple[int, int]:
-    """The columns X and Y in MiniProf's header: `ColumnDef=X,Y,...`."""
+    """The columns X and Y that the header of a MiniProf file names, `ColumnDef=X,Y,...`; otherwise `else_`."""
     said = re.search(r"^\s*ColumnDef\s*=\s*(.*?)\s*$", text, re.MULTILINE | re.IGNORECASE)
     names = [name.strip(' "*').upper() for name in said[1].split(",")] if said else []
     return (names.index("X"), names.index("Y")) if {"X", "Y"} <= set(names) else else_
 
 
 def _table(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, str]:
-    """The points of a file of columns, and a hint for a refused profile. A column without coordinates is refused as y, because it might pass as one."""
+    """Reads the points of a file of columns. Returns them, and a hint for the message if the profile is refused.
+
+    A column of y that only counts its lines, or is constant, is refused, because the profile might pass the other checks.
+    """
     points, width = columns_of(text, columns, path)
     y, first, name = points[:, 0], columns[0], Path(path).name
     others = f"; y and z are other columns: columns=({first + 1}, {first + 2})?" if width > first + 2 else ""

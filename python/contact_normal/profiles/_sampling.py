@@ -1,4 +1,4 @@
-"""The uncertainty of pressures by the points of a profile: by their noise, by the decimals of the file, and by their number."""
+"""Estimates how uncertain pressures are because of the points of a profile: their noise, the decimals of the file, and their number."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ if TYPE_CHECKING:
     from .._arguments import Doubles
     from .._result import Result
 
-# The number of places across the contact at which curves are compared.
+# Curves are compared at this number of places across the contact.
 _PLACES = 256
 
-# A warning needs an uncertainty of more than this part of the largest pressure.
+# There is a warning if pressures are uncertain by more than this part of the largest pressure.
 _TOLD = 0.05
 
-# Fewer points than this within the contact are few. More points with uncertain pressures are noisy.
+# A contact with fewer points than this has too few. If it has more and pressures are uncertain, the points have noise.
 _FEW = 8
 
-# A warning needs a contact point that is uncertain by more than the first length, in mm; above the second one it has no value. Slopes are compared up to the
-# third length beside it.
+# There is a warning if the contact point is uncertain by more than _MOVED mm. An uncertainty above _MANY mm is not given as a number. Slopes are compared
+# _BESIDE mm on either side of the contact point.
 _MOVED, _MANY, _BESIDE = 1.0, 10.0, 1.0
 
-# The number of points on each side of the contact point.
+# The number of points on each side of the contact point that are used for the uncertainty of its slope.
 _AROUND = 24
 
 
 @dataclass(frozen=True)
 class Body:
-    """A body of a contact: the curve of its profile, and the t of the contact point on it."""
+    """A body of a contact: its name in messages, the curve of its profile, and the parameter t of the contact point on the curve."""
 
     name: str
     curve: Curve
@@ -45,15 +45,18 @@ class Body:
 def warn(bodies: tuple[Body, ...], y: Doubles, result: Result, stacklevel: int) -> None:
     """Warns if pressures depend on the choice of points of the profiles, or on smoothing.
 
-    Let e2 be the change of a curve without every other point, and e4 that with every fourth point. If points are dense enough, e4 is several times e2, and the
-    error with all points is some e2^2/e4; errors by noise do not fall like this. The changes are converted to pressures: a wave cos(k y) of the undeformed
-    distance needs E* k/2 of its height. E* follows from F = 4/3 E* a d, Hertz's force for an approach d and a contact area of pi a^2. Smoothed points show no
-    noise: their curve has samples of the remaining errors, and the removed form.
+    Let e2 be the change of a curve through every second point only, and e4 that of a curve through every fourth point only. If points are dense enough, e4 is
+    several times e2, and the error with all points is about e2^2/e4. Errors by noise do not fall like this.
+
+    The changes are converted to pressures: to flatten a wave cos(k y) of the undeformed distance takes pressures of E* k/2 times its height. E* follows from
+    F = 4/3 E* a d, Hertz's force for an approach d and a contact area of pi a^2.
+
+    Smoothed points show no noise. Therefore the curve of a smoothed profile has samples of the remaining errors, and the removed form (`Curve.open`).
 
     Parameters
     ----------
     y : ndarray, (my,)
-        Places of the rows of elements, relative to the contact point.
+        Coordinates of the rows of elements, relative to the contact point.
     """
     rows = y[result.contact.any(axis=1)]
     if not (len(rows) and result.approach > 0.0 and result.max_pressure > 0.0):
@@ -77,7 +80,7 @@ _CAUSES = ("so much they depend on which points of the profiles are taken", "so 
 
 
 def _cure(body: Body, inside: int, cause: int) -> str:
-    """The advice in a warning."""
+    """The advice in a warning on uncertain pressures, for the body and the cause (an index of `_CAUSES`) of the largest part."""
     if cause == 2:
         return "use a shorter wave_length"
     if inside < _FEW:
@@ -88,7 +91,7 @@ def _cure(body: Body, inside: int, cause: int) -> str:
 
 
 def _open_pressures(body: Body, along: Doubles, e_star: float) -> tuple[float, float, float]:
-    """The root mean squares of uncertain pressures: by the choice of points, by errors of smoothed points, and by lost form."""
+    """The uncertainties of pressures by a body, as root mean squares: by the choice of points, by errors of smoothed points, and by the removed form."""
 
     def of_every(every: int) -> float:
         return sum(_pressure(_difference(body, along, start, every), along, e_star) for start in range(every)) / every
@@ -101,7 +104,7 @@ def _open_pressures(body: Body, along: Doubles, e_star: float) -> tuple[float, f
 
 
 def _by_choice(of_every: Callable[[int], float]) -> float:
-    """The part that depends on the choice of points, from the changes with every second and every fourth point."""
+    """The uncertainty e2 min(1, e2/e4) by the choice of points, where e2 = `of_every(2)` and e4 = `of_every(4)`; see `warn`."""
     second = of_every(2)
     return second * min(1.0, second / of_every(4)) if second > 0.0 else 0.0
 
@@ -111,9 +114,9 @@ def _rms(values: list[float]) -> float:
 
 
 def warn_of_place(bodies: tuple[Body, Body], stacklevel: int) -> None:
-    """Warns if the contact point of a rail and a wheel depends on the choice of points of their profiles, or on noise after smoothing.
+    """Warns if the contact point of a rail and a wheel depends on the choice of points of their profiles, or on noise that smoothing leaves.
 
-    There both have equal slopes, so that slopes with an uncertainty s move it by s over the difference of the curvatures.
+    At the contact point both curves have equal slopes. If the slopes are uncertain by s, the point is uncertain by s over the difference of the curvatures.
     """
     of_rail, of_wheel = ((_slope(body.curve, body.t + _BESIDE) - _slope(body.curve, body.t - _BESIDE)) / (2.0 * _BESIDE) for body in bodies)
     parts = [_open_slope(body) for body in bodies]
@@ -128,15 +131,15 @@ def warn_of_place(bodies: tuple[Body, Body], stacklevel: int) -> None:
 
 
 def _slope(curve: Curve, t: float) -> float:
-    """The angle of a curve, in rad."""
+    """The angle of a curve from the direction of y at a parameter t, in rad."""
     _, _, dy, dz = curve.at(np.clip(t, curve.t[0], curve.t[-1]))
     return float(np.arctan2(dz, dy))
 
 
 def _open_slope(body: Body) -> float:
-    """The uncertainty of the angle at the contact point, by the choice of points or by remaining noise."""
+    """The uncertainty of the angle at the contact point in rad, by the choice of points and by the noise that smoothing leaves."""
     curve, at_point = body.curve, int(np.searchsorted(body.curve.t, body.t))
-    # Far points have no effect on a spline.
+    # Far points have hardly any effect on a spline.
     first, last = max(0, at_point - _AROUND), min(at_point + _AROUND, len(curve.y) - 1)
 
     def of_every(every: int) -> float:
@@ -157,7 +160,7 @@ def _open_slope(body: Body) -> float:
 
 
 def _difference(body: Body, along: Doubles, start: int, every: int) -> Doubles:
-    """The distance along the normal of the curve through the points `start`, `start + every`, ... and both ends from that through all points."""
+    """The distance along the normal between two curves: that through the points `start`, `start + every`, ... and both ends, and that through all points."""
     curve, last = body.curve, len(body.curve.y) - 1
     chosen = np.unique(np.concatenate([[0], np.arange(start, last, every), [last]]))
     coarse = Curve(curve.y[chosen], curve.z[chosen])
@@ -168,7 +171,10 @@ def _difference(body: Body, along: Doubles, start: int, every: int) -> Doubles:
 
 
 def _pressure(off: Doubles, along: Doubles, e_star: float) -> float:
-    """The root mean square of the pressures that flatten these heights, less their line, with a mirror-symmetric continuation."""
+    """The root mean square of the pressures that flatten the heights `off` at the places `along`.
+
+    The least-squares line of the heights is subtracted, and they are continued mirror-symmetrically, so that they are periodic.
+    """
     level = off - np.polyval(np.polyfit(along, off, 1), along)
     both = np.concatenate([level, level[::-1]])
     k = 2.0 * np.pi * np.fft.rfftfreq(len(both), along[1] - along[0])

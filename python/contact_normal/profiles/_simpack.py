@@ -1,4 +1,4 @@
-"""The text of SIMPACK's rails and wheels: a header of `name = value`, and points."""
+"""Reads rails and wheels of SIMPACK: texts with a header of lines `name = value`, and points."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ import numpy as np
 
 from ._columns import NUMBER, columns_of, to_number
 
-# Entries of the header that change the points, with their defaults. A pair of bounds counts only if the lower bound is
-# less than the upper one.
+# The entries of the header that change the points, with their defaults. Bounds apply only if the lower one is less than the upper one.
 _SAID = {
     "shift.y": 0.0, "shift.z": 0.0, "rotate": 0.0, "bound.y.min": 1.0, "bound.y.max": 0.0, "bound.z.min": 1.0, "bound.z.max": 0.0,
     "mirror.y": 0.0, "mirror.z": 0.0, "inversion": 0.0, "units.len.f": 1000.0, "units.ang.f": 1.0, "approx.smooth": 0.0, "point.dist.min": 0.0,
@@ -20,8 +19,7 @@ _KINDS = {0.0: "rail", 1.0: "wheel"}
 
 
 def points_of(text: str, kind: str, path: str | os.PathLike[str]) -> tuple[np.ndarray, float]:
-    """The points after the shift, rotation, bounds, mirrors and inversion of the header, and the length of their unit
-    in mm."""
+    """Reads the points, and applies the shift, rotation, bounds, mirrors and inversion of the header. Returns them, and the length of their unit in mm."""
     text = "\n".join(line.split("!")[0] for line in text.splitlines())
     found = re.search(r"point\.begin(.*?)point\.end", text, re.DOTALL | re.IGNORECASE)
     if not found:
@@ -50,8 +48,7 @@ def points_of(text: str, kind: str, path: str | os.PathLike[str]) -> tuple[np.nd
 
 
 def _header(text: str, path: str | os.PathLike[str]) -> dict[str, float]:
-    """The numbers of the header. Names may be in upper or lower case. Values that are no numbers are refused, because
-    they would change the profile."""
+    """The values of the header's entries `_SAID`, whose names may be in upper or lower case. A value that is no number is refused, as it changes the points."""
     said = dict(_SAID)
     for name, value in re.findall(r"^\s*([\w.]+)\s*=\s*(.*?)\s*$", text, re.MULTILINE):
         key = name.lower()
@@ -72,7 +69,7 @@ def _header(text: str, path: str | os.PathLike[str]) -> dict[str, float]:
 
 
 def _check_kind(text: str, kind: str, path: str | os.PathLike[str]) -> None:
-    """Refuses a wheel that is read as a rail, or a rail that is read as a wheel, if the header has a type."""
+    """Raises an error if the header says that a rail is read as a wheel, or a wheel as a rail."""
     header = re.search(r"header\.begin(.*?)header\.end", text, re.DOTALL | re.IGNORECASE)
     said = re.search(rf"^\s*type\s*=\s*({NUMBER})\s*$", header[1], re.MULTILINE | re.IGNORECASE) if header else None
     is_kind = _KINDS.get(to_number(said[1])) if said else None

@@ -1,4 +1,4 @@
-"""The smoothing splines of Reinsch (1967) through the points of a curve, in a time proportional to their number."""
+"""Computes the smoothing splines of Reinsch (1967) through the points of a curve, in a time proportional to their number."""
 
 from __future__ import annotations
 
@@ -13,18 +13,20 @@ if TYPE_CHECKING:
 
 
 def smoothing_splines(rows: Doubles, places: Doubles, wave_length: float) -> Doubles:
-    """Rows of values at the points of a curve, without waves that are shorter than a length. For the points themselves each coordinate is a row, because
-    smoothing of z over y alone would bend a steep face, whose slope changes fast.
+    """Smooths rows of values at the points of a curve: returns the rows without waves that are shorter than `wave_length`.
+
+    To smooth the points themselves, each coordinate is a row. Smoothing of z over y alone would bend a steep face, whose slope changes fast.
 
     Parameters
     ----------
     rows : ndarray, (m, n)
-        Values at the points, in order.
+        Values at the points, in their order.
     places : ndarray, (2, n)
-        The points, without equal neighbours.
+        y and z of the points. Neighbours must not be equal.
     """
     d = np.hypot(*np.diff(places))
-    # f = z - c W^-1 Q g with (R + c Q' W^-1 Q) g = Q' z, where g = f'' = R^-1 Q' f at the inner points, and the diagonal of W has the length of each point.
+    # The smoothing spline f of values z is f = z - c W^-1 Q g with (R + c Q' W^-1 Q) g = Q' z, where g = f'' = R^-1 Q' f at the inner points. The diagonal of W
+    # has the length of the curve that belongs to each point: half of the lengths to both neighbours.
     before, after = 1.0 / d[:-1], 1.0 / d[1:]
     at = -before - after
     w = 1.0 / np.convolve(np.concatenate([d[:1], d, d[-1:]]), [0.5, 0.5], "valid")

@@ -1,6 +1,6 @@
-"""From measured heights to a gap, step by step, in numpy.
+"""Makes a gap from measured heights, step by step, in numpy.
 
-All steps, for an array of heights in m::
+These are all steps, for an array of heights in m::
 
     from contact_normal import surface
     measured = surface.heights(values, size=(1.2e-3, 0.9e-3), units=("m", "N"))

@@ -1,4 +1,4 @@
-"""Faults of a measurement: holes, fill values that mean "not measured", spikes."""
+"""Finds faults of measured heights: holes, fill values that mean "not measured", spikes."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
     from .._arguments import Doubles
 
-# A fill value occurs at least this often; a single one is a spike.
+# A fill value occurs at least this often; a single extreme value is a spike.
 _OFTEN = 2
-# With fewer distinct values fill values cannot be distinguished from steps of the surface.
+# If heights have fewer distinct values, fill values cannot be distinguished from steps of the surface.
 _DISTINCT = 8
-# Curvatures between elements at twice the distance are larger by this factor.
+# An estimate from elements at twice the distance has an error by the curvature that is larger by this factor.
 _FAR = 4.0
-# Standard deviations of a normal distribution per median of absolute values.
+# The standard deviation of a normal distribution is this factor times the median of the absolute values.
 _DEVIATIONS = 1.0 / 0.6744897501960817
 
 
@@ -42,9 +42,9 @@ class Faults(Short):
     fills : ndarray of bool, (my, mx)
         Elements with a fill value, which means "not measured".
     fill_values : tuple of float
-        The fill values.
+        The fill values that were found.
     spikes : ndarray of bool, (my, mx)
-        Single elements far from their neighbours.
+        Single elements whose heights differ much from those of their neighbours.
     """
 
     heights: Heights
@@ -55,7 +55,7 @@ class Faults(Short):
 
     @property
     def removed(self) -> Heights:
-        """The heights with holes in place of fill values and spikes."""
+        """The heights with holes in the place of fill values and spikes."""
         return self.heights.without(self.fills | self.spikes)
 
     def __str__(self) -> str:
@@ -77,7 +77,11 @@ class Faults(Short):
 
 
 def _fill_values(z: Doubles) -> list[float]:
-    """Extreme values that occur more than once, and whose distance from the next value exceeds all distances of values between the extremes."""
+    """The fill values of an array, by the rule of `faults`.
+
+    Such a value is the smallest or the largest one, occurs more than once, and is farther from the next value than any two values between the extremes are from
+    each other.
+    """
     found: list[float] = []
     while True:
         values, counts = np.unique(z[np.isfinite(z) & ~np.isin(z, found)], return_counts=True)
@@ -93,7 +97,7 @@ def _fill_values(z: Doubles) -> list[float]:
 
 
 def warn_of_fill_values(heights: Heights, stacklevel: int) -> None:
-    """Warns of probable fill values, because they move a least-squares plane, or carry the load."""
+    """Warns of probable fill values. They would move a least-squares plane, or carry the load."""
     told = [f"{np.count_nonzero(heights.z == value)} elements have the value {value:g}" for value in _fill_values(heights.z)]
     if told:
         warnings.warn(f"{' and '.join(told)}, which seems to stand for 'not measured': heights(..., fill=) or faults(...).removed makes them holes",
@@ -101,32 +105,36 @@ def warn_of_fill_values(heights: Heights, stacklevel: int) -> None:
 
 
 def _noise(z: Doubles, period: str | None, away: Doubles) -> float:
-    """The standard deviation of the differences `away` from the neighbours, by their median."""
+    """The standard deviation of the absolute differences `away` of heights from the medians of their neighbours, estimated from the median of `away`."""
     deviation = _DEVIATIONS * float(np.median(away))
     others = away[away > 0.0]
     if deviation > 0.0 or not len(others) or all_but_single(z, period):
         return deviation
-    # More than half of the differences are 0, as on quantised heights or a plateau: the steps of the heights or the other differences are the noise.
+    # More than half of the differences are 0, as with quantised heights or on a plateau. Then the noise is estimated from the steps between distinct heights,
+    # or from the other differences.
     step, other = float(np.median(np.diff(np.unique(z[np.isfinite(z)])))), float(np.median(others))
-    # The few steps of a plane are those of its spikes.
+    # On a plane the only steps are those of its spikes, which are no measure of the noise.
     return min(step, _DEVIATIONS * other) if other <= step else _DEVIATIONS * other
 
 
 def faults(heights: Heights, spike: float = 10.0) -> Faults:
-    """Finds fill values and spikes.
+    """Finds fill values and spikes of measured heights.
 
-    A fill value is the smallest or the largest value, occurs at least twice, and its distance from the next value exceeds all distances of values between the
-    extremes. A spike differs from the median of its neighbours by more than `spike` standard deviations of these differences, and as much from the mean of each
+    A fill value is the smallest or the largest value, and occurs at least twice. Its distance from the next value exceeds the distance of any two values
+    between the extremes.
+
+    A spike differs from the median of its neighbours by more than `spike` standard deviations of these differences. It differs as much from the mean of each
     pair of opposite neighbours, so that crests along a lay are no spikes. If more than half of the heights equal their neighbours, as with quantised or clipped
-    heights, the deviation is that of the steps of the heights, or of the other differences. The corners of a surface with steps, and crests and edges of
-    grooves that are oblique to the grid, may count as spikes: check them (`Faults.plot`).
+    heights, the standard deviation is estimated from the steps between distinct heights, or from the other differences.
+
+    The corners of a surface with steps, and crests and edges of grooves that are oblique to the grid, may count as spikes: check them with `Faults.plot`.
 
     Parameters
     ----------
     heights : Heights
         The measured heights.
     spike : float
-        Limit in standard deviations, by their median: 10 is far beyond smooth or self-affine surfaces.
+        The limit in standard deviations, which are estimated from the median. Heights of smooth or self-affine surfaces are far below 10.
     """
     refuse_others(heights=heights)
     if not number("spike", spike) > 0.0:
@@ -140,12 +148,14 @@ def faults(heights: Heights, spike: float = 10.0) -> Faults:
     if known.any():
         limit = spike * _noise(z, heights.period, away[known])
         spikes[known] = away[known] > limit
-        # At a border, or beside a hole, another spike or a crest, a slope moves the median: such an element is no spike. Nor are neighbours of a spike.
+        # At a border, or beside a hole, another spike or a crest, the median differs because of the slope. Such an element, or the neighbour of a spike, is no
+        # spike if some of its neighbours give its height. In the second pass the spikes that are left do not count as neighbours.
         for is_again in (False, True):
             at = np.nonzero(spikes)
             said = said_by_neighbours(np.where(spikes & is_again, np.nan, z), heights.period, at, z[at], only_between=not is_again)
             spikes[at] = ~(np.abs(z[at] - said) <= limit)
-        # For an element among holes, as the middle of dust whose rim was removed, the elements at a distance of two give the height, less exactly.
+        # An element all of whose neighbours are holes, as the middle of dust whose rim was removed, is compared with the elements at a distance of two. These
+        # give its height less exactly.
         at = np.nonzero(np.isfinite(z) & ~known)
         spikes[at] = np.abs(z[at] - said_by_neighbours(z, heights.period, at, z[at], reach=2)) > _FAR * limit
     return Faults(heights, heights.holes, fills, tuple(values), spikes)

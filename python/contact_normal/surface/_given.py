@@ -1,4 +1,4 @@
-"""What a caller gives beside what a file says."""
+"""Combines the arguments of a caller of `read` with what the file itself says of units and sizes."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import numpy as np
 
 from .._units import same_length
 
-# How the size of an element is given.
+# The arguments of `heights` by which the size of an element is given.
 SIZES = {"dx", "dy", "size", "span", "x", "y"}
 
 
 def with_unit(unit: Any, given: dict[str, Any]) -> dict[str, Any]:
-    """What is given, in the unit that the file says, if it does."""
+    """The arguments `given`, with the unit of length that the file says, if it says one. Another unit among the arguments is refused."""
     if not unit:
         return given
     units = given.get("units") or (str(unit), "N")
@@ -23,7 +23,7 @@ def with_unit(unit: Any, given: dict[str, Any]) -> dict[str, Any]:
 
 
 def with_header(told: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
-    """What is given, with the size and the unit that the header of a text says."""
+    """The arguments `given`, with the unit of the header of a text, and with its size unless the caller gives sizes."""
     if not told:
         return given
     sizes = {} if SIZES & set(given) else {"size": told["size"]}
@@ -31,8 +31,10 @@ def with_header(told: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
 
 
 def steps_of(shape: tuple[int, int], given: dict[str, Any]) -> tuple[float | None, float | None]:
-    """The distances of the columns and of the lines of a text with these lines and columns, as they are given. None where
-    they are not, or are no lengths: `heights` says so."""
+    """The distances between the columns and between the lines of a text, from the sizes that the caller gives. `shape` has the numbers of lines and columns.
+
+    They are None if no sizes are given or these are no lengths; `heights` has the messages for that.
+    """
     is_xy, (lines, columns) = given.get("axes") == "xy", shape
     counts = (lines, columns) if is_xy else (columns, lines)
     try:

@@ -1,4 +1,4 @@
-"""Heights of a surface on a grid, in the layout of the library's arrays."""
+"""The class `Heights`: heights of a surface on a grid, in the layout of the library's arrays."""
 
 from __future__ import annotations
 
@@ -21,19 +21,20 @@ if TYPE_CHECKING:
 
     from .._arguments import Doubles
 
-# Coordinates whose spacings differ by more than this part are not those of one grid: files have at least five digits.
+# Coordinates are evenly spaced if their spacings differ by at most this part. Files write coordinates with at least five digits.
 _EQUAL = 1e-3
 
-# With at least _STEPS slopes the median slope of a surface is below _STEEP, that of an rms slope of 1, and one of ten slopes is above _LEVEL. Smaller slopes
-# are those of heights in m with sizes in um.
+# Slopes outside of these limits show that heights and sizes are in different units. The median slope of a surface is below _STEEP, that of normally
+# distributed slopes with an rms of 1. At least one slope of ten is above _LEVEL: smaller slopes arise from heights in m with sizes in um. The test needs
+# _STEPS slopes.
 _STEEP, _STEPS, _LEVEL = 0.67, 64, 2e-7
 
-# The number of elements that are processed at a time: some megabytes.
+# The number of elements of a block. Temporary arrays for a block have some megabytes.
 _BLOCK = 1 << 18
 
 
 def blocks(shape: tuple[int, ...]) -> Iterator[slice]:
-    """Blocks of rows of an array, so that temporary arrays of large maps stay small."""
+    """Yields slices of rows that divide an array into blocks, so that temporary arrays for large maps stay small."""
     rows = max(1, _BLOCK // max(shape[1], 1))
     for first in range(0, shape[0], rows):
         yield slice(first, min(first + rows, shape[0]))
@@ -41,7 +42,9 @@ def blocks(shape: tuple[int, ...]) -> Iterator[slice]:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Heights(Short):
-    """Heights of a surface, positive out of the material; x and y of it are the centres of columns and rows, relative to the middle.
+    """Heights of a surface on a grid of elements, positive out of the material.
+
+    The properties x and y are the coordinates of the centres of columns and rows, relative to the middle of the grid.
 
     Attributes
     ----------
@@ -65,12 +68,12 @@ class Heights(Short):
 
     @property
     def x(self) -> Doubles:
-        """Centres of the columns, relative to the middle."""
+        """Coordinates of the centres of the columns, relative to the middle of the grid, (mx,)."""
         return centres(self.z.shape[1], self.dx)
 
     @property
     def y(self) -> Doubles:
-        """Centres of the rows, relative to the middle."""
+        """Coordinates of the centres of the rows, relative to the middle of the grid, (my,)."""
         return centres(self.z.shape[0], self.dy)
 
     @property
@@ -84,19 +87,21 @@ class Heights(Short):
         return float(self.z.size * self.dx * self.dy)
 
     def force(self, mean_pressure: float) -> float:
-        """The force of a mean pressure over the area of the whole grid, holes included."""
+        """The force that has this mean pressure over the area of the whole grid, holes included."""
         return number("mean_pressure", mean_pressure) * self.area
 
     def without(self, where: npt.ArrayLike) -> Heights:
-        """The heights without those of a mask of booleans, whose elements become holes."""
+        """The heights with holes where the mask `where`, an array of booleans, is True."""
         mask = np.asarray(where)
         if mask.dtype != bool or mask.shape != self.z.shape:
             raise ValueError(f"where has shape {mask.shape} and dtype {mask.dtype}; it must be a mask of booleans, {self.z.shape}")
         return dataclasses.replace(self, z=np.where(mask, np.nan, self.z))
 
     def turned_over(self, about: str = "y") -> Heights:
-        """The surface after its body is turned over about an axis along x or y, to lie on another one: the heights keep their sign, and x, or y, is
-        reversed."""
+        """The surface of a body that is turned over about an axis along x or y, so that it can lie on another body.
+
+        Turned about y, the columns are in reverse order; turned about x, the rows. The heights keep their sign.
+        """
         if about not in ("x", "y"):
             raise ValueError(f'about is {about!r}; it must be "x" or "y"')
         return dataclasses.replace(self, z=np.ascontiguousarray(self.z[:, ::-1] if about == "y" else self.z[::-1]))
@@ -109,14 +114,14 @@ class Heights(Short):
 
 
 def refuse_others(**given: Any) -> None:
-    """Refuses other objects than Heights, because an array has no element sizes."""
+    """Raises an error for arguments that are not Heights, as arrays, which have no element sizes."""
     for name, one in given.items():
         if not isinstance(one, Heights):
             raise TypeError(f"{name} is a {type(one).__name__}; it must be Heights: surface.heights(values, dx, dy)")
 
 
 def _spacing(name: str, places: Any, count: int) -> tuple[float, bool]:
-    """The spacing of coordinates, and whether they decrease."""
+    """The spacing of `count` evenly spaced coordinates, and whether they decrease."""
     values = real(name, places)
     if count < 2:
         raise ValueError(f"{name} has one place, which tells no spacing: give dx and dy in the place of x and y")
@@ -130,7 +135,7 @@ def _spacing(name: str, places: Any, count: int) -> tuple[float, bool]:
 
 
 def _plain(values: Any) -> Doubles:
-    """A two-dimensional array with NaN in elements that were not measured."""
+    """`values` as a two-dimensional array of doubles, with NaN where elements were not measured."""
     z = real("values", without_mask("values", values))
     if z.ndim != 2 or not z.size:
         raise ValueError(f"values has shape {z.shape}; heights have two indices{'' if z.size else ', and one element at least'}")
@@ -140,7 +145,7 @@ def _plain(values: Any) -> Doubles:
 def _element_sizes(
     shape: tuple[int, ...], dx: Any, dy: Any, size: Any, span: Any, x: Any, y: Any
 ) -> tuple[tuple[float, float], tuple[bool, bool]]:
-    """The size of an element, from exactly one of the ways to give it, and whether coordinates decrease."""
+    """The sizes (dx, dy) of an element, from the one way in which they are given, and whether the coordinates x and y decrease."""
     my, mx = shape
     ways = (dx is not None or dy is not None, size is not None, span is not None, x is not None or y is not None)
     if sum(ways) != 1:
@@ -181,12 +186,12 @@ def heights(
     period: str | None = None,
     units: tuple[str, str] | None = None,
 ) -> Heights:
-    """Heights from an array, with x along a row, and with the size of an element.
+    """Makes `Heights` from an array and the size of an element. The array is transposed and reversed so that x grows along a row, and y from row to row.
 
     Parameters
     ----------
     values : array_like
-        Heights. NaN, infinite and masked: not measured.
+        Heights. Elements that are NaN, infinite or masked were not measured.
     dx, dy : float
         Element sizes. Instead of them one of `size`, `span`, or `x` and `y`:
     size : (float, float)
@@ -201,7 +206,7 @@ def heights(
         Whether the first row has the largest y, as in an image. Decreasing coordinates y have the same meaning. Increasing ones contradict it, and are
         refused, also in files.
     fill : float, optional
-        A fill value, which means "not measured", in the unit of the array. `faults` finds unknown ones. If no element has the value, there is a warning.
+        A fill value, which means "not measured", in the unit of the array. `faults` finds unknown fill values. There is a warning if no element has the value.
     period : {"x", "y", "xy"}, optional
         Directions in which the surface is periodic.
     units : (str, str), optional
@@ -224,14 +229,15 @@ def heights(
         raise ValueError("y rises: its first row has the smallest y; leave out top_first")
     z = z[:: -1 if top_first or y_falls else 1, :: -1 if x_falls else 1]
     if fill is not None:
-        # The value as the array holds it: in single precision -9999.9 is another number. Readers of files may have made doubles of such numbers.
-        own = getattr(values, "dtype", np.dtype(float))
+        # The fill value is rounded to the precision of the array: in single precision -9999.9 is another number. If no element has this value, it is rounded to
+        # single precision, because the reader of a file may have converted such numbers to doubles.
+        dtype = getattr(values, "dtype", np.dtype(float))
         as_held = number("fill", fill)
-        if own.kind == "f":
-            as_held = float(own.type(as_held))
+        if dtype.kind == "f":
+            as_held = float(dtype.type(as_held))
         filled = z == as_held
         if not filled.any():
-            # The largest single-precision number is written as 3.4028235e38, which is above it.
+            # The largest number of single precision is written as 3.4028235e38. As a double this text is larger, and may overflow when it is rounded.
             with np.errstate(over="ignore"):
                 single = float(np.float32(as_held))
             filled = z == single if np.isfinite(single) else filled
@@ -245,8 +251,10 @@ def heights(
 
 
 def _warn_of_slopes(z: Doubles, dx: float, dy: float) -> None:
-    """Warns of slopes that no surface has: heights and element sizes are then in different units. Only the majority counts, so that fill values and spikes have
-    no effect."""
+    """Warns of slopes that no surface has, because heights and element sizes are then probably in different units.
+
+    The test uses quantiles of the slopes, so that fill values and spikes have no effect.
+    """
     for name, axis, d in (("x", 1, dx), ("y", 0, dy)):
         steps = np.abs(np.diff(z[:: max(1, len(z) // 64)] if axis == 1 else z[:, :: max(1, z.shape[1] // 64)], axis=axis))
         steps = steps[np.isfinite(steps)]

@@ -1,4 +1,4 @@
-"""Files of instruments, by the package SurfaceTopography, and the choice among several arrays."""
+"""Reads files of instruments by the package SurfaceTopography, and chooses among several arrays of a file."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from ._texts import refuse_skipped_rows
 # Texts that SurfaceTopography reads as maps; others may be binary.
 _TEXTS = ".asc", ".xyz", ".tsv"
 
-# What is said of files and topographies without sizes; the command line looks for it.
+# The message on files and topographies without sizes. The command line recognises it by its words "size of an element".
 NO_SIZE = "does not say the size of an element: give size, the lengths of the field, or dx and dy"
 
 
 def size_of(topography: Any) -> tuple[float, ...] | None:
-    """The lengths of the field of a topography; None if it does not say them."""
+    """The lengths of the field of a topography; None if the topography does not have them."""
     try:
         sizes = tuple(float(length) for length in topography.physical_sizes)
-    except TypeError:  # They are None, or products with None.
+    except TypeError:  # `physical_sizes` is None, or was computed from None.
         return None
     return sizes if all(0.0 < length < float("inf") for length in sizes) else None
 
 
 def of_instrument(path: str | os.PathLike[str], end: str, variable: str | None, is_sized: bool) -> Any:
-    """The topography of an instrument's file; `is_sized`: the caller gives its size."""
+    """Reads the topography of an instrument's file. `is_sized`: the caller gives the size, so that the file need not have it."""
     try:
         open_topography = importlib.import_module("SurfaceTopography").open_topography
     except ImportError as error:
@@ -44,19 +44,19 @@ def of_instrument(path: str | os.PathLike[str], end: str, variable: str | None, 
             found = reader.topography(channel_index=which)
             if is_sized or getattr(found, "dim", 2) != 2 or size_of(found) is not None:
                 return found
-        except Exception as error:  # of that package: it has its own for each format
+        except Exception as error:  # SurfaceTopography raises errors of its own for each format.
             if "physical_sizes" not in str(error):
                 return _tried(lambda: reader.topography(channel_index=which), path)
             if not is_sized:
                 raise TypeError(f"{path} {NO_SIZE}") from error
         else:
             raise TypeError(f"{path} {NO_SIZE}")
-        # What the caller gives takes the place of these sizes.
+        # SurfaceTopography requires sizes. The caller's size replaces these later.
         return _tried(lambda: reader.topography(channel_index=which, physical_sizes=(1.0, 1.0)), path)
 
 
 def _tried(call: Callable[[], Any], path: str | os.PathLike[str]) -> Any:
-    """The result of a call of this package. Its errors, which have many lines, become one."""
+    """Makes a call of SurfaceTopography, and returns its result. An error with a message of many lines becomes a ValueError of one line."""
     try:
         return call()
     except OSError:
@@ -67,7 +67,10 @@ def _tried(call: Callable[[], Any], path: str | os.PathLike[str]) -> Any:
 
 
 def _channel(reader: Any, variable: str | None, end: str, path: str | os.PathLike[str]) -> int | None:
-    """The index of the wanted array; None: the reader's own choice. Arrays of MATLAB may be coordinates, so that one of several must be named."""
+    """The index of the wanted array of a file; None: the array that SurfaceTopography chooses, with a warning if there are several.
+
+    Of several arrays of a MATLAB file one must be named, because others may be coordinates.
+    """
     channels = _tried(lambda: reader.channels, path)
     maps = {str(channel.name): k for k, channel in enumerate(channels) if channel.dim == 2 and min(channel.nb_grid_pts or (2,)) > 1}
     if variable is not None or (end == ".mat" and maps):
@@ -78,7 +81,7 @@ def _channel(reader: Any, variable: str | None, end: str, path: str | os.PathLik
 
 
 def chosen(name: str | None, names: list[Any], path: str | os.PathLike[str]) -> Any:
-    """The name of an array, which must be given if there are several."""
+    """The `name` of an array if it is among `names`, or the only name. It must be given if there are several."""
     if name is None and len(names) == 1:
         return names[0]
     if not names:

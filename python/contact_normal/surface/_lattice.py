@@ -1,4 +1,4 @@
-"""Lists of points, x y z per line, at places of a grid: finds the grid."""
+"""Finds the grid of a list of points, x y z per line, that are at places of a grid."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from ._not_a_map import EVEN, levels, rises_evenly
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Lists have at most this many columns: x y z, colours, intensities; and at least this many lines.
+# A list of points has at most MOST_COLUMNS columns (x y z, colours, intensities) and at least _LINES lines.
 MOST_COLUMNS, _LINES = 8, 6
 
-# At least this part of the places of a grid has a point.
+# Points are those of a grid if at least this part of its places has a point.
 _LEAST = 0.5
 
-# A grid has at most this many times as many rows as are named.
+# A grid has at most this many times as many rows, or columns, as there are distinct coordinates in the list.
 _WIDEST = 2.0
 
 
@@ -37,10 +37,11 @@ def may_be_list(shape: tuple[int, int]) -> bool:
 
 
 def lattice_of(values: Any) -> Lattice | None:
-    """The grid of a list of points in any order, with at most one point per place; None if there is no grid, or if several columns may be coordinates.
+    """Finds the grid of a list of points in any order, with at most one point per place.
 
-    Of two columns of coordinates the first one is x. Heights are in the column after them, or in the only other one. Columns that count are skipped, others
-    with a warning. Missing places, up to half of all, are NaN, with a warning.
+    Returns None if there is no grid, or if more than two columns may be coordinates. The first of the two columns of coordinates is x. The heights are in the
+    column after them, or in the only other one. Columns that count points are ignored; other columns are ignored with a warning. Places without a point, up to
+    half of all, are NaN, with a warning.
     """
     if not may_be_list(values.shape):
         return None
@@ -48,7 +49,7 @@ def lattice_of(values: Any) -> Lattice | None:
     places = {k: rungs(values[:, k]) for k in range(columns)}
     parts = {(a, b): _part(places[a], places[b]) for a, b in combinations(range(columns), 2)}
     pairs = [pair for pair, part in parts.items() if part == 1.0] or [pair for pair, part in parts.items() if part >= _LEAST]
-    # A tilted plane over x and y is a coordinate as well.
+    # The heights of a tilted plane seem to be coordinates, too. Of three columns the first two are then taken for x and y.
     if columns == 3 and (0, 1) in pairs:
         pairs = [(0, 1)]
     if len(pairs) != 1:
@@ -69,7 +70,10 @@ def lattice_of(values: Any) -> Lattice | None:
 
 
 def rungs(values: Any) -> tuple[Doubles, Any]:
-    """The evenly spaced places of a column, with missing ones between them, and the place of each line; empty if they are not even."""
+    """The evenly spaced coordinates whose values a column has, including those between that are missing, and the index of the coordinate of each line.
+
+    The coordinates are empty if the values are not evenly spaced.
+    """
     found, which = levels(values)
     if len(found) < 2:
         return np.zeros(0), which
@@ -84,7 +88,7 @@ def rungs(values: Any) -> tuple[Doubles, Any]:
 
 
 def _part(one: tuple[Doubles, Any], other: tuple[Doubles, Any]) -> float:
-    """The part of the places of a grid that two columns name; 0 if a place occurs twice, or if there is no grid."""
+    """The part of the places of a grid that have a point, if two columns are its coordinates; 0 if a place occurs twice, or if there is no grid."""
     (x, ix), (y, iy) = one, other
     if min(len(x), len(y)) < 2 or len(np.unique(iy * len(x) + ix)) < len(ix):
         return 0.0

@@ -1,4 +1,4 @@
-"""Tilt and form of a surface, fitted by least squares and removed."""
+"""Fits tilt or form of a surface by least squares, and removes them."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ._heights import Heights, blocks, refuse_others
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Normal equations are singular if the ratio of their eigenvalues is round-off: 2^-52 times a million terms.
+# Normal equations count as singular if the ratio of their smallest and largest eigenvalue is round-off: 2^-52 times a million terms.
 _SINGULAR = 1e-10
 
-# Powers of x and y of each form.
+# The powers (of x, of y) of the terms of each form.
 FORMS = {
     "mean": ((0, 0),),
     "plane": ((0, 0), (1, 0), (0, 1)),
@@ -34,9 +34,9 @@ class Form:
     kind : {"mean", "plane", "quadric"}
         The terms of the polynomial.
     coefficients : tuple of float
-        Coefficients of 1; of x and y; of x^2, x y and y^2.
+        Coefficients of 1; of x and y; of x^2, x y and y^2, as far as the kind has these terms.
     rms : float
-        Root mean square of the remaining heights.
+        Root mean square of the heights that remain without the form.
     """
 
     kind: str
@@ -45,19 +45,19 @@ class Form:
 
     @property
     def tilt(self) -> tuple[float, float]:
-        """Slopes in x and y at the middle."""
+        """Slopes in x and y at the middle of the grid."""
         _, x, y = (*self.coefficients, 0.0, 0.0)[:3]
         return x, y
 
     @property
     def radii(self) -> tuple[float, float]:
-        """Radii of curvature in x and y at the middle, positive for a ball, inf for a plane."""
+        """Radii of curvature in x and y at the middle of the grid, positive for a ball, inf for a plane."""
         square = (*self.coefficients, *[0.0] * 6)[3:6]
         rx, ry = (np.inf if c == 0.0 else -0.5 / c for c in (square[0], square[2]))
         return float(rx), float(ry)
 
     def values(self, heights: Heights) -> Doubles:
-        """The form at the elements of these heights."""
+        """The heights of the form at the centres of the elements of `heights`."""
         x, y = heights.x[None, :], heights.y[:, None]
         zero = np.zeros(heights.z.shape)
         return np.asarray(sum((c * x**i * y**j for c, (i, j) in zip(self.coefficients, FORMS[self.kind])), zero))
@@ -71,14 +71,13 @@ def form(heights: Heights, kind: str = "plane") -> Form:
     heights : Heights
         Heights without spikes and fill values, because each counts with its square.
     kind : {"mean", "plane", "quadric"}
-        A mean height; a plane; a plane and curvatures. Of a line scan a straight line, and a parabola: across the line
-        nothing is tilted.
+        A mean height; a plane; a plane and curvatures. For a line scan "plane" is a straight line and "quadric" a parabola along the line.
     """
     refuse_others(heights=heights)
     if kind not in FORMS:
         raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(FORMS)}")
     powers = _powers(kind, heights.z.shape)
-    # Scaled to [-1, 1]: there the normal equations of these monomials are well conditioned.
+    # Coordinates are scaled to [-1, 1], where the normal equations of these monomials are well conditioned.
     scales = 0.5 * heights.dx * heights.z.shape[1], 0.5 * heights.dy * heights.z.shape[0]
     count, matrix, right = 0, np.zeros((len(powers), len(powers))), np.zeros(len(powers))
     for rows in blocks(heights.z.shape):
@@ -98,22 +97,22 @@ def form(heights: Heights, kind: str = "plane") -> Form:
 
 
 def _powers(kind: str, shape: tuple[int, ...]) -> tuple[tuple[int, int], ...]:
-    """Powers of x and y of a form. In a direction of one element, as across a line scan, nothing is tilted, as by
-    `balance`."""
+    """The powers of x and y of the terms that are fitted. Terms along a direction with one element, as across a line scan, are left out."""
     return tuple((i, j) for i, j in FORMS[kind] if (i == 0 or shape[1] > 1) and (j == 0 or shape[0] > 1))
 
 
 def level(heights: Heights, kind: str = "plane") -> Heights:
-    """Heights without their tilt or form, fitted by least squares.
+    """Subtracts the tilt or form of heights, fitted by least squares.
 
-    A least-squares plane is a convention of metrology. A body that is free to tilt has another tilt: `balance`. With a period only "mean" keeps the period.
+    A least-squares plane is a convention of metrology. A body that is free to tilt takes another tilt under load: see `balance`. Of periodic heights only the
+    mean can be removed, because a plane or a quadric would break the period.
 
     Parameters
     ----------
     heights : Heights
         Heights without spikes and fill values.
     kind : {"mean", "plane", "quadric"}
-        See `form`. "quadric" also removes the curvature; if the ideal form belongs to the contact, add it with its own gap.
+        See `form`. "quadric" also removes the curvature. If the ideal form is a part of the contact, as that of a ball, add its own gap afterwards.
     """
     refuse_others(heights=heights)
     is_tilted = {"x": heights.z.shape[1] > 1, "y": heights.z.shape[0] > 1}
@@ -124,10 +123,10 @@ def level(heights: Heights, kind: str = "plane") -> Heights:
 
 
 def border_jumps(heights: Heights) -> tuple[float, float]:
-    """The ratio of steps across the border to steps inside, in x and in y, as root mean squares.
+    """Computes, in x and in y, the ratio of two steps of the heights: from the last element to the first one, and between neighbours, both as rms.
 
-    About 1 if the grid is a period of the surface; much larger if it is not, or if a tilt remains. NaN: no two neighbours inside, or across the border, were
-    both measured.
+    The ratio is about 1 if the grid is a period of the surface, and much larger if it is not, or if a tilt remains. It is NaN if no two neighbours, inside or
+    across the border, were both measured.
     """
 
     refuse_others(heights=heights)

@@ -1,4 +1,4 @@
-"""Heights from lists of points, with what the lines above them say."""
+"""Makes heights from a list of points, and from what the lines above the list say of its columns."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ._texts import of_text
 
 
 def of_list(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) -> Heights | None:
-    """Heights of a list of points of a grid; None if the numbers are none."""
+    """The heights of a list of points of a grid; None if the numbers are no such list."""
     if sizes := sorted(SIZES & set(given)):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -48,15 +48,18 @@ def of_list(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) ->
 
 
 def of_text_list(path: str | os.PathLike[str], given: dict[str, Any]) -> Heights | None:
-    """Heights of a text that other packages read as a map, if it is a list of points of a grid. Lines above the points need no #."""
+    """The heights of a text that SurfaceTopography would read as a map, if the text is a list of points of a grid; otherwise None.
+
+    Lines above the points need no #.
+    """
     head = head_of(path)
     above = count_above(head)
     first = next((line for each in head.splitlines()[above:] if (line := each.split("#")[0].strip())), "")
-    # A map is left to them before all of it is read.
+    # A first line of many numbers shows a map. It is left to SurfaceTopography, before the whole file is read here.
     if len(re.findall(r"[^\s;]+", first)) > MOST_COLUMNS:
         return None
     with warnings.catch_warnings():
-        # `has_empty_cells` has told them.
+        # `has_empty_cells` has issued the warnings of this file before.
         warnings.simplefilter("ignore")
         try:
             values = of_text(path, ".txt", above)

@@ -1,4 +1,4 @@
-"""Estimates of the height of an element from its neighbours."""
+"""Estimates the height of an element from the heights of its neighbours."""
 
 from __future__ import annotations
 
@@ -13,12 +13,15 @@ if TYPE_CHECKING:
 
     from .._arguments import Doubles
 
-# With this number of the four pairs of opposite neighbours lines and planes are not needed.
+# An element with at least this number of the four pairs of opposite neighbours needs no estimates by lines and planes.
 _PAIRS = 3
 
 
 def _padded(z: Doubles, period: str | None, width: int = 1) -> Doubles:
-    """The array with more elements on each side: NaN, or with a period those of the other side. A single element in a direction is not its own neighbour."""
+    """The array with `width` more elements on each side: NaN, or along a period the elements of the other side.
+
+    In a direction with one element these are NaN, so that the element is not its own neighbour.
+    """
     padded, inner = np.pad(z, width, constant_values=np.nan), slice(width, -width)
     if period in ("x", "xy") and z.shape[1] > width:
         padded[inner, :width], padded[inner, -width:] = z[:, -width:], z[:, :width]
@@ -28,33 +31,39 @@ def _padded(z: Doubles, period: str | None, width: int = 1) -> Doubles:
 
 
 def _nearest(said: Doubles, height: Doubles) -> Doubles:
-    """For each column the value that is nearest to a height; NaN if there is none."""
+    """For each column the estimate in `said` that is nearest to the height of the column's element; NaN if there is no estimate."""
     off = np.where(np.isnan(said), np.inf, np.abs(said - height))
     return np.asarray(np.take_along_axis(said, off.argmin(axis=0)[None], axis=0)[0])
 
 
 def _around(z: Doubles, period: str | None, at: Any, reach: int) -> Doubles:
-    """The eight neighbours of some elements, or the elements in these directions at a distance `reach`; NaN for missing ones."""
+    """For each element of `at` the heights of the eight elements at a distance of `reach` along the axes and diagonals; NaN where there is none."""
     padded, (rows, columns) = _padded(z, period, reach), at
     return np.stack([padded[rows + reach * j, columns + reach * i] for j in range(3) for i in range(3) if (j, i) != (1, 1)])
 
 
 def _said_around(z: Doubles, period: str | None, at: Any, reach: int, only_between: bool) -> Doubles:
-    """Estimates for some elements by pairs of opposite neighbours. If most pairs are missing, also by lines along the axes from one side, and by planes through
-    three neighbours."""
+    """Estimates of the heights of the elements `at` of a map: the means of pairs of opposite neighbours.
+
+    If most pairs are missing, there are also the extrapolations of two elements on one side along an axis, and planes through three neighbours.
+    """
     around = _around(z, period, at, reach)
     means = 0.5 * (around[:4] + around[:3:-1])
     if only_between:
         return means
     on_axes = [1, 3, 4, 6]
     lines = 2.0 * around[on_axes] - _around(z, period, at, 2 * reach)[on_axes]
-    # Two neighbours on the axes and the one between them, by their indices among the eight.
+    # For each plane two neighbours on the axes and the diagonal neighbour between them, by their indices among the eight.
     planes = np.stack([around[one] + around[other] - around[between] for one, other, between in ((1, 3, 0), (1, 4, 2), (6, 3, 5), (6, 4, 7))])
     return np.concatenate([means, np.where(np.isfinite(means).sum(axis=0) < _PAIRS, np.concatenate([planes, lines]), np.nan)])
 
 
 def _said_along(z: Doubles, is_period: bool, at: npt.NDArray[np.intp], only_between: bool) -> Doubles:
-    """Estimates for elements of a line: by the next ones on both sides, and on each side by the next two. If one side has none, also by the next one."""
+    """Estimates of the heights of the elements `at` of a line scan.
+
+    These are the interpolation between the next heights on both sides, and the extrapolation of two heights on each side. At an end of the line, where the
+    interpolation is missing, the next height itself is an estimate, too.
+    """
     count = len(z)
     places = np.flatnonzero(np.isfinite(z))
     if is_period:
@@ -82,9 +91,12 @@ def _said_along(z: Doubles, is_period: bool, at: npt.NDArray[np.intp], only_betw
 
 
 def said_by_neighbours(z: Doubles, period: str | None, at: Any, height: Doubles, reach: int = 1, only_between: bool = False) -> Doubles:
-    """For some elements the estimate from their neighbours that is nearest to `height`. On a crest or a step the pair along it gives the height, but for a
-    spike no pair does. On a map neighbours have a distance of `reach` elements. NaN without neighbours. With `only_between` only elements on both sides are
-    used, because a plane or a line from one side through another spike may give the height of a spike."""
+    """For each element of `at` the estimate from its neighbours that is nearest to its `height`; NaN without neighbours.
+
+    On a crest or a step the pair of neighbours along it gives the height, but for a spike no pair does. On a map the neighbours are at a distance of `reach`
+    elements. With `only_between` only pairs on both sides are used, because a plane or a line from one side through another spike may give the height of a
+    spike.
+    """
     if 1 not in z.shape:
         return _nearest(_said_around(z, period, at, reach, only_between), height)
     along = 1 if z.shape[0] == 1 else 0
@@ -92,7 +104,7 @@ def said_by_neighbours(z: Doubles, period: str | None, at: Any, height: Doubles,
 
 
 def neighbours_median(z: Doubles, period: str | None) -> Doubles:
-    """The median of the up to eight neighbours of each element; NaN without any."""
+    """The median of the heights of the up to eight neighbours of each element; NaN without any."""
     padded = _padded(z, period)
     median = np.empty(z.shape)
     for rows in blocks(z.shape):

@@ -1,4 +1,4 @@
-"""Text files of numbers that are no map: lists of points, and tables with coordinates beside the heights."""
+"""Recognises arrays of numbers that are no map of heights: lists of points, and tables with coordinates beside the heights."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ from typing import Any
 
 import numpy as np
 
-# Steps are even if they differ by at most this part. Coordinates of a stage have noise.
+# Steps count as even if they differ from their mean by at most this part. The coordinates of a measuring stage have noise.
 EVEN = 0.01
 
-# Lists have few columns and many lines.
+# A list of points usually has at most _COLUMNS, rarely up to _MANY columns, and at least _LINES lines.
 _COLUMNS, _MANY, _LINES = 4, 8, 8
 
-# Ranges of columns of heights differ by less than this factor.
+# The ranges of the columns of a strip of heights differ by less than this factor.
 _ALIKE = 3.0
 
-# Coordinates are multiples of half a step to this part of the step.
+# Coordinates are multiples of half a step, up to this part of the step.
 _MULTIPLE = 1e-3
 
-# Maps with few columns are strips; strips with this ratio of lines to columns are rare.
+# A map with few columns is a strip. Strips with at least this many lines per column are rare.
 _LONG = 25
 
 _PLACES = "places of a grid, at least half of them and none twice, and no size is given"
@@ -27,13 +27,13 @@ _INSTEAD = ("others must be interpolated on a grid (scipy.interpolate.griddata) 
 
 
 def why(values: Any, steps: tuple[float | None, float | None] = (None, None)) -> str | None:
-    """The reason for which these numbers are no map, if there is one. `steps`: the distances of columns and of lines, as far as known."""
+    """The reason why these numbers are no map of heights; None if there is none. `steps`: the distances of columns and of lines, as far as known."""
     lines, columns = values.shape
     if _are_points(values):
         return (f"has x, y and z of {lines} points, which are read where they are {_PLACES}; {_INSTEAD}")
     if 1 < columns <= _MANY and lines >= max(_LINES, 2 * columns + 1):
         found = [k for k in range(columns) if rises_evenly(values[:, k]) or _has_even_levels(values[:, k])]
-        # Strips of heights with few digits have even levels as well: with many columns two of them must be coordinates.
+        # Heights with few digits may have even levels as well. Therefore, with more than _COLUMNS columns two of them must look like coordinates.
         if len(found) > (columns > _COLUMNS):
             return (f"has {lines} lines of {columns} numbers, of which number {found[0] + 1} is a coordinate or a count: a list of points. Lists are read where "
                     f"their points are {_PLACES}; {_INSTEAD}")
@@ -48,7 +48,7 @@ def why(values: Any, steps: tuple[float | None, float | None] = (None, None)) ->
 
 
 def doubt(values: Any) -> str | None:
-    """A possible error of a map, for a warning."""
+    """The text of a warning if these numbers may be something else than a map; None otherwise."""
     lines, columns = values.shape
     for name, _ in _straight_firsts(values):
         return f"has a straight first {name}, which is read as heights: if these are coordinates, leave it out"
@@ -58,7 +58,10 @@ def doubt(values: Any) -> str | None:
 
 
 def _straight_firsts(values: Any) -> list[tuple[str, Any]]:
-    """The line or the column that, as the only one, is first and rises evenly; each with the rows of which it is the first."""
+    """The first line, or first column, that rises evenly while no other one does: the candidates for coordinates.
+
+    Returns pairs of the name, "line" or "column", and the array whose first row is this line or column.
+    """
     if min(values.shape) <= _COLUMNS:
         return []
     both = (("line", values), ("column", values.T))
@@ -66,8 +69,11 @@ def _straight_firsts(values: Any) -> list[tuple[str, Any]]:
 
 
 def _lies_among(rows: Any) -> bool:
-    """Whether the first row has heights like the others: a faulty line of a scan that was levelled with the map is straight. Coordinates begin at a multiple of
-    half a step, or far away; heights of a line that was levelled alone have the mean 0."""
+    """Whether a straight first row may have heights, as a faulty line of a scan.
+
+    Its values must be near the range of the others. Coordinates begin at a multiple of half a step, or are far from this range. A line of heights that was
+    levelled alone has the mean 0.
+    """
     if not np.isfinite(rows[1:, 1:]).any():
         return False
     first, (low, high) = rows[0, 1:], (np.nanmin(rows[1:, 1:]), np.nanmax(rows[1:, 1:]))
@@ -78,7 +84,7 @@ def _lies_among(rows: Any) -> bool:
 
 
 def _goes_by(rows: Any, step: float | None) -> bool:
-    """Whether the first row may have coordinates with this step, in any decimal unit, or counts."""
+    """Whether the first row may have coordinates with this step, in the same unit or a power of ten of it, or counts."""
     mean = abs(np.diff(rows[0, 1:]).mean())
     if step is None or abs(mean - round(mean)) <= _MULTIPLE and mean > 0.5:
         return True
@@ -87,7 +93,7 @@ def _goes_by(rows: Any, step: float | None) -> bool:
 
 
 def _is_strip(values: Any) -> bool:
-    """Whether four columns are all heights. Coordinates have larger or different ranges."""
+    """Whether all of four columns are heights: their ranges are similar and overlap. The ranges of coordinates are larger, or elsewhere."""
     if values.shape[1] != _COLUMNS or not (np.isfinite(values).sum(0) > 1).all():
         return False
     low, middle, high = np.nanquantile(np.where(np.isfinite(values), values, np.nan), [0.05, 0.5, 0.95], axis=0)
@@ -95,7 +101,7 @@ def _is_strip(values: Any) -> bool:
 
 
 def rises_evenly(values: Any) -> bool:
-    """Whether all steps are equal, and not 0."""
+    """Whether the steps between the values are equal and not 0. At least three steps are needed."""
     with np.errstate(invalid="ignore"):
         steps = np.diff(values)
     mean = steps.mean() if len(steps) > 2 else 0.0
@@ -103,7 +109,10 @@ def rises_evenly(values: Any) -> bool:
 
 
 def levels(values: Any) -> tuple[Any, Any]:
-    """Groups close values into levels: the levels in increasing order, and the level of each value. None if a value is not finite."""
+    """Groups close values into levels. Returns the levels in increasing order, and the index of the level of each value.
+
+    There are no levels if a value is not finite, or if all values are equal.
+    """
     if not np.isfinite(values).all() or np.ptp(values) == 0.0:
         return np.zeros(0), np.zeros(0, dtype=int)
     order = np.argsort(values, kind="stable")
@@ -116,7 +125,7 @@ def levels(values: Any) -> tuple[Any, Any]:
 
 
 def _has_even_levels(values: Any) -> bool:
-    """Whether the values have few levels with even steps, each several times."""
+    """Whether the values are on few levels with even steps, on average at least twice on each."""
     places, which = levels(values)
     if not (len(places) > 2 and len(values) >= 2 * len(places) and rises_evenly(places)):
         return False
@@ -124,7 +133,7 @@ def _has_even_levels(values: Any) -> bool:
 
 
 def _are_points(values: Any) -> bool:
-    """Whether three columns are x, y and z: the first two name most places of a grid, each at most once."""
+    """Whether three columns are x, y and z of points: the first two are the coordinates of at least half of the places of a grid, each at most once."""
     if values.shape[1] != 3 or len(values) < 4 or not np.isfinite(values[:, :2]).all():
         return False
     counts = [len(np.unique(values[:, k])) for k in range(2)]

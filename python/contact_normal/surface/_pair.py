@@ -21,29 +21,29 @@ if TYPE_CHECKING:
     from .._arguments import Both, Doubles
     from .._result import Result
 
-# The largest number of steps of a search. Each takes one solve, or several if it must be shortened.
+# The largest number of steps of a search for a tilt. Each takes one solve, or several if the step must be shortened.
 _STEPS = 60
-# The first change of the tilt lifts one side by this part of the approach.
+# The first trial of a tilt moves the surfaces by this part of the approach over the length of the grid.
 _TRIAL = 0.1
-# Changes of the centre by tilts are singular below this part of the largest.
+# A combination of tilts that moves the centre of pressures less than this part of the most effective one counts as without effect.
 _SINGULAR = 1e-9
-# The shortest fraction of a step.
+# A step is halved until the centre of pressures comes nearer to its aim, down to this fraction.
 _SHORTEST = 1.0 / 64.0
 
 
 def gap(lower: Heights, upper: Heights | None = None, *, turned: str = "y") -> Gap:
-    """The gap of a surface and a plane, or of two facing surfaces.
+    """Returns the gap of a surface and a plane, or of two facing surfaces.
 
     The undeformed distance is 0 at the point of first contact, and +inf at holes of either surface, which carry no pressure.
 
     Parameters
     ----------
     lower : Heights
-        A surface; heights are positive out of the material.
+        The heights of one surface, positive out of the material.
     upper : Heights, optional
-        The other surface, measured like the first one, from outside. None: a plane.
+        The heights of the other surface, measured in the same way from outside. None: a plane.
     turned : {"y", "x", ""}
-        The axis about which the upper body is turned over to lie on the lower one. "": its array has its final layout.
+        The axis about which the upper body is turned over to lie on the lower one. "": its array already has the layout of the lower one.
     """
     refuse_others(lower=lower, **({} if upper is None else {"upper": upper}))
     for one in (lower, upper):
@@ -68,8 +68,10 @@ def gap(lower: Heights, upper: Heights | None = None, *, turned: str = "y") -> G
 
 
 def e_star(young_modulus: Both, poisson_ratio: Both) -> float:
-    """E* of two bodies: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, 1985, section 4.2). One value stands for both bodies, inf for a
-    rigid one."""
+    """Returns E* of two bodies: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, 1985, section 4.2).
+
+    One value of an argument stands for both bodies. A Young's modulus of inf is that of a rigid body.
+    """
     sum_of = 0.0
     for body in range(2):
         young, nu = (number(name, value if np.ndim(value) == 0 else two(name, value)[body])
@@ -82,18 +84,18 @@ def e_star(young_modulus: Both, poisson_ratio: Both) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Balanced:
-    """The result of `balance`; if `result.status` is not `OK`, its last state.
+    """The result of `balance`. If `result.status` is not `OK`, the search was ended, and this is its last state.
 
     Attributes
     ----------
     gap : Gap
-        The gap with the tilt removed.
+        The gap of the tilted body.
     tilt : (float, float)
-        Slopes in x and y that were subtracted from the undeformed distance.
+        The slopes in x and y that were subtracted from the undeformed distance.
     result : Result
-        The solve of this gap.
+        The result of the solve of this gap.
     centre : (float, float)
-        The centre of the pressures.
+        The centre of the pressures, in coordinates of the gap.
     """
 
     gap: Gap
@@ -108,7 +110,7 @@ def _tilted(gap: Gap, tilt: Doubles) -> Gap:
 
 
 def _start(gap: Gap) -> Doubles:
-    """The slopes of the least-squares plane, if the undeformed distance is mainly this plane; otherwise 0."""
+    """The tilt with which the search begins: the slopes of the least-squares plane if the undeformed distance is mainly this plane, otherwise 0."""
     iy, ix = np.nonzero(np.isfinite(gap.h))
     if len(iy) < 3:
         return np.zeros(2)
@@ -120,13 +122,13 @@ def _start(gap: Gap) -> Doubles:
 def _centre(gap: Gap, result: Result) -> Doubles:
     """The centre of the pressures, in coordinates of the gap."""
     total = result.pressure.sum()
-    # A solve that was ended at once has no pressures.
+    # A solve that was ended at once has no pressures; its centre is NaN.
     weights = result.pressure / (total if total != 0.0 else np.nan)
     return np.array([weights.sum(axis=0) @ gap.x, weights.sum(axis=1) @ gap.y])
 
 
 def _checked(gap: Gap, force: float, at: tuple[float, float], tolerance: float, scene: dict[str, Any]) -> Doubles:
-    """The point at which the force acts; refuses scenes that cannot be balanced."""
+    """Checks the arguments of `balance`, and returns the point at which the force acts."""
     if not isinstance(gap, Gap):
         raise TypeError(f"gap is a {type(gap).__name__}; it must be a Gap: surface.gap(heights)")
     if period := scene.get("period", gap.period):
@@ -142,12 +144,12 @@ def _checked(gap: Gap, force: float, at: tuple[float, float], tolerance: float, 
 
 
 def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolerance: float = 1e-4, **scene: Any) -> Balanced:
-    """Finds the tilt of a body that a force at a point presses, and that is free to tilt: the moments of the pressures about this point are 0.
+    """Finds the tilt of a body that is free to tilt and that a force presses at a point: the moments of the pressures about this point are 0.
 
-    Unlike a least-squares plane it depends on the load: a body rests on its summits. The tilt minimises a convex energy, so it is unique. It is found by
-    Newton's method with Broyden's updates: in four to ten solves for smooth bodies, in some tens if few elements of a rough body carry the force. If the search
-    from the tilt of the surface fails, it begins again from the tilt on which a rigid body rests. In a direction without extent of the elements with a surface,
-    as across one row, there is no tilt.
+    The tilt depends on the load, unlike that of a least-squares plane, because a body rests on its summits. It minimises a convex energy and is therefore
+    unique. It is found by Newton's method with Broyden's updates: in four to ten solves for smooth bodies, in some tens if few elements of a rough body carry
+    the force. If the search from the tilt of the surface fails, it begins again from the tilt at which a rigid body would rest. The body is not tilted in a
+    direction in which the elements with a surface have no extent, as across one row.
 
     Parameters
     ----------
@@ -158,14 +160,14 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
     at : (float, float)
         The point at which the force acts, in coordinates of the gap.
     tolerance : float
-        Tolerance of the centre of the pressures, relative to the length of the grid.
+        Tolerance of the centre of the pressures, relative to the length of the grid in each direction.
     **scene
         Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all solves together.
 
     Returns
     -------
     Balanced
-        If a solve was cancelled, or `max_seconds` is over: the tilt of the last solve, with the reason in `result.status`.
+        The balanced state. If a solve was cancelled, or `max_seconds` is over, it is the state of the last solve, with the reason in `result.status`.
 
     Raises
     ------
@@ -199,7 +201,7 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
 
 
 class _Ended(Exception):
-    """A solve of a search was cancelled, or has no time left."""
+    """Ends a search because a solve was cancelled or no time is left. `so_far` is the state of the last solve."""
 
     def __init__(self, so_far: Balanced) -> None:
         super().__init__()
@@ -212,23 +214,26 @@ def _balanced(gap: Gap, tilt: Doubles, result: Result, centre: Doubles) -> Balan
 
 
 def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles], tuple[Result, Doubles]], tilt: Doubles, rests: bool) -> tuple[Balanced, bool]:
-    """The tilt whose pressures have their centre at `aim`, beginning with a first one, and whether it was found. `solved` returns the result of a tilt, and the
-    offset of its centre. If a rigid body `rests` on the first tilt, changes of the tilt are scaled by the approach, however small."""
+    """Searches the tilt whose pressures have their centre at `aim`, from a first `tilt` on. Returns the last state, and whether it is balanced.
+
+    `solved` returns for a tilt the result, and the offset of its centre of pressures from `aim`. With `rests` a rigid body would rest at the first tilt; then
+    the trial tilts are scaled by the approach, however small it is.
+    """
     sizes = np.array([gap.h.shape[1] * gap.dx, gap.h.shape[0] * gap.dy])
     result, off = solved(tilt)
     begun = _tilted(gap, tilt).h
     least = 0.0 if rests and result.approach > 0.0 else 1e-3 * float(np.ptp(begun[np.isfinite(begun)]))
     trial = _TRIAL * max(result.approach, least) / sizes
     slopes, known = np.eye(2), np.isfinite(gap.h)
-    # If all elements are in one line along an axis, the centre stays on this line.
+    # Trial tilts in x and y give the derivatives of the offset. If all elements are in one line along an axis, the other tilt cannot move the centre.
     for k in (k for k in range(2) if np.count_nonzero(known.any(axis=k)) > 1):
         step = np.where(np.arange(2) == k, trial * -np.sign(off + 1e-300), 0.0)
         slopes[:, k] = (solved(tilt + step)[1] - off) / step[k]
     for _ in range(_STEPS):
         if np.abs(off / sizes).max() <= tolerance:
             return _balanced(gap, tilt, result, off + aim), True
-        # If all elements are in one line oblique to the grid, one combination of tilts has no effect. Lengths are relative, so that no side of an element is
-        # round-off.
+        # If all elements are in one line oblique to the grid, one combination of tilts has no effect; least squares ignores it. Lengths are relative to those
+        # of the grid, so that the effect along its short side is not taken for round-off.
         relative = slopes / np.outer(sizes, sizes)
         unit = np.abs(relative).max()
         if not (np.isfinite(unit) and unit > 0.0):
@@ -242,7 +247,7 @@ def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles]
             if np.abs(there / sizes).max() < np.abs(off / sizes).max() or part < _SHORTEST:
                 break
             part *= 0.5
-        # From the tilt on which a body rests there is no other search.
+        # A search from the tilt at which a rigid body rests goes on with the shortest step, because no other search follows it.
         if part < _SHORTEST and not rests:
             break
         step = part * step

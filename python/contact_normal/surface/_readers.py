@@ -1,4 +1,4 @@
-"""Heights from files: those of numpy and texts; files of instruments by SurfaceTopography; NetCDF by xarray."""
+"""Reads heights from files: those of numpy, texts, NetCDF by xarray, and files of instruments by SurfaceTopography."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from ._texts import has_empty_cells, of_text
 
 
 def from_xarray(array: Any, **given: Any) -> Heights:
-    """Heights of an `xarray.DataArray` with two dimensions that have coordinates, in any order.
+    """Makes `Heights` from an `xarray.DataArray` with two dimensions, in any order, that have coordinates.
 
-    The dimension of x is the one whose name begins with "x", otherwise the second one, or with axes="xy" the first one. Units of lengths are those of the
-    attribute "units", if x, y and the heights have it; different units are refused. With dx, size, span, or x and y the coordinates are not read. The
-    attributes "unit" and "periodic" are those of SurfaceTopography's files: the unit, and a direction in which the surface is periodic.
+    The dimension of x is the one whose name begins with "x"; otherwise it is the second one, or with axes="xy" the first one. The unit of length is that of the
+    attribute "units", if x, y and the heights have it; different units are refused. If dx, size, span, or x and y are given, the coordinates are not read. In
+    files of SurfaceTopography the attribute "unit" is the unit of length, and "periodic" of a coordinate says that the surface is periodic in its direction.
     """
     if hasattr(array, "data_vars") or not hasattr(array, "dims"):
         choose = f": choose one of {', '.join(map(str, array.data_vars))}" if hasattr(array, "data_vars") else ""
@@ -69,13 +69,15 @@ def from_xarray(array: Any, **given: Any) -> Heights:
 
 
 def _unit(attributes: Any) -> Any:
-    """The unit in the attributes, by the conventions of NetCDF or by SurfaceTopography."""
+    """The unit among the attributes of an array: "units" by the conventions of NetCDF, or "unit" by SurfaceTopography."""
     return attributes.get("units") or attributes.get("unit")
 
 
 def from_topography(topography: Any, **given: Any) -> Heights:
-    """Heights of a uniform topography of the package SurfaceTopography, whose arrays have x as the first index. With axes="yx" it is y, and the first
-    of its lengths is that in y."""
+    """Makes `Heights` from a uniform topography of the package SurfaceTopography.
+
+    The first index of its arrays is x. With axes="yx" the first index, and the first of its lengths, are taken for y.
+    """
     if not hasattr(topography, "heights"):
         raise TypeError(f"topography is a {type(topography).__name__}; it must be a topography of SurfaceTopography")
     if getattr(topography, "dim", 2) != 2 or not getattr(topography, "is_uniform", True):
@@ -97,14 +99,18 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     Parameters
     ----------
     path : str or path
-        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of places of a grid, in any order, as in `.xyz`,
-        `.asc` and `.tsv`, too; a line `# x [mm] y [mm] z [mm]` names their columns, and a header as
-        Gwyddion writes it says the size of the field and the unit. `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd`, `.gwy`
-        and `.mat`, by the package SurfaceTopography. The rows of a matrix of `.mat` are those of y. Heights and coordinates must be in one unit of length.
+        The file. Heights and coordinates must be in one unit of length. The format is that of the ending:
+
+        - `.npy`, `.npz`: arrays of numpy.
+        - `.txt`, `.dat`, `.csv`: numbers, each line a row of the grid. A header as Gwyddion writes it says the size of the field and the unit.
+        - The same, and `.xyz`, `.asc`, `.tsv`: x, y and z of the places of a grid, one point per line, in any order. A line `# x [mm] y [mm] z [mm]` names the
+          columns.
+        - `.nc`: NetCDF, by the package xarray.
+        - All others, as `.x3p`, `.sur`, `.opd`, `.gwy` and `.mat`: by the package SurfaceTopography. The first index of a matrix of `.mat` is that of y.
     variable : str, optional
         The name of the array, if the file has several.
     **given
-        Arguments that are missing in the file, or wrong: see `heights`. `units` must name the unit of length of the file.
+        Arguments of `heights` that are missing in the file, or wrong there. `units` must name the unit of length of the file.
 
     Raises
     ------
@@ -116,12 +122,12 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         raise IsADirectoryError(f"{path} is a folder; it must be a file")
     if end in (".npy", ".npz"):
         values = _of_numpy(path, variable)
-        # For masked arrays and others `heights` has the error messages.
+        # Arrays with other dtypes or dimensions go to `heights`, which has the error messages for them.
         is_plain = values.ndim == 2 and values.dtype.kind in "iuf"
         return _of_numbers(path, values, given) if is_plain else heights(values, **given)
     if end in (".asc", ".txt", ".dat") and Path(path).exists():
         refuse_esri_grid(path)
-    # Some instruments write binary files with these endings.
+    # Some instruments write binary files with the endings of texts, so the contents decide.
     of_numbers = end in (".txt", ".dat", ".csv") and is_text(path)
     of_others = end in _TEXTS and Path(path).exists() and is_text(path)
     # SurfaceTopography would shift the columns after an empty cell.
@@ -129,7 +135,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         _refuse_variable(path, variable)
         told = header_of(path, bool(SIZES & set(given)))
         if given.get("axes") == "xy" and told.get("size"):
-            # The width is that of the columns of the file, which are y then.
+            # The width in the header is that along a line of the file, which is y here.
             told = {**told, "size": told["size"][::-1]}
         made = _of_numbers(path, of_text(path, end), with_header(told, given))
         _warn_of_size(path, told, made)
@@ -143,34 +149,34 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     if end == ".mat":
         given = {"axes": "yx", **given}
     if end in _TEXTS and getattr(topography, "dim", 2) == 2:
-        # Its arrays have x as the first index.
+        # Arrays of SurfaceTopography have x as the first index, so the transposed array has the lines of the file.
         values = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
         steps = steps_of(values.T.shape, given)
         if reason := why_no_map(values.T, steps) or why_no_map(values, steps[::-1]):
             raise ValueError(f"{path} {reason}")
         if reason := doubt(values.T):
             warnings.warn(f"{path} {reason}", stacklevel=2)
-        # The caller's axes are those of the lines of the file.
+        # The caller's `axes` describe the lines of the file, which are transposed here.
         if "axes" in given:
             given = {**given, "axes": {"yx": "xy", "xy": "yx"}.get(given["axes"], given["axes"])}
     return from_topography(topography, **given)
 
 
 def _of_netcdf(path: str | os.PathLike[str], variable: str | None, given: dict[str, Any]) -> Heights:
-    """Heights of a NetCDF file."""
+    """Reads heights from a NetCDF file."""
     from .._netcdf import read as netcdf
 
     dataset = netcdf(path)
-    # Others, as that of a map projection, are no heights.
+    # Only variables with two dimensions can be heights. Others describe, for example, a map projection.
     maps = [name for name, array in dataset.data_vars.items() if array.ndim == 2 or sum(size > 1 for size in array.shape) == 2]
-    # SurfaceTopography's mask says where the heights are NaN.
+    # The variable "mask" of a file of SurfaceTopography marks the holes of the heights. The heights are NaN there anyway.
     maps = [name for name in maps if not (name == "mask" and "maskandscale" in dataset[name].attrs)]
     names = maps if maps and variable is None else list(dataset.data_vars)
     return from_xarray(dataset[chosen(variable, names, path)], **given)
 
 
 def _warn_of_size(path: str | os.PathLike[str], told: dict[str, Any], made: Heights) -> None:
-    """Warns if the size differs from that of the header, by more than that of n - 1 elements instead of n."""
+    """Warns if the size of the heights differs from that of the header by more than one element in n and one per cent."""
     if not told.get("size"):
         return
     for name, n, d, length in zip("xy", made.z.shape[::-1], (made.dx, made.dy), told["size"]):
@@ -181,7 +187,7 @@ def _warn_of_size(path: str | os.PathLike[str], told: dict[str, Any], made: Heig
 
 
 def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) -> Heights:
-    """Heights from numbers that may be a list of points."""
+    """The heights of an array of numbers, which may be a map or a list of points. Numbers that are neither are refused."""
     if (found := of_list(path, values, given)) is not None:
         return found
     if reason := why_no_map(values, steps_of(values.shape, given)):
@@ -191,18 +197,18 @@ def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]
     return heights(values, **given)
 
 
-# Texts that SurfaceTopography reads as maps, whatever they hold.
+# The endings of texts that SurfaceTopography reads as maps, even if they are lists of points.
 _TEXTS = ".asc", ".xyz", ".tsv"
 
 
 def _refuse_variable(path: str | os.PathLike[str], variable: str | None) -> None:
-    """Refuses the name of an array of a file that has one array."""
+    """Raises an error if the caller names an array, although the file has only one."""
     if variable is not None:
         raise ValueError(f"{path} holds one array; give variable for files of several")
 
 
 def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
-    """The array of a file of numpy."""
+    """Reads an array from a file of numpy."""
     try:
         with open(path, "rb") as file:
             found = np.load(file)
@@ -213,7 +219,7 @@ def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
         if not isinstance(found, np.ndarray):
             raise ValueError("it holds bytes")
         return found
-    except Exception as error:  # Wrong bytes end in errors of zlib, zipfile, tokenize and others.
+    except Exception as error:  # A damaged file raises errors of zlib, zipfile, tokenize and other modules.
         is_of_system = isinstance(error, OSError) and error.errno not in (None, errno.EINVAL)
         if is_of_system or isinstance(error, MemoryError) or "give variable" in str(error):
             raise

@@ -1,4 +1,4 @@
-"""The plane on which a rigid body rests, found by a simplex method."""
+"""Finds the plane on which a rigid body rests, by a simplex method."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ if TYPE_CHECKING:
     from .._arguments import Doubles
     from .._gap import Gap
 
-# The height of the first corners, which are no elements, in ranges of the heights above all elements. A body that can
-# rest on elements does not rest on points so high.
+# The height of the first corners, in ranges of the heights. These corners are no elements. They are so high that a body which can rest on elements does not
+# rest on them.
 _HIGH = 1e6
-# Most steps of the simplex method. Maps of a million elements need some tens of steps.
-_TURNS = 200
-# Round-off of a height above the plane, and of a weight, relative to the range of the heights and to 1.
+# The largest number of steps of the simplex method. Maps of a million elements need some tens of steps.
+_MOST_STEPS = 200
+# Heights above the plane, relative to the range of the heights, and weights of corners count as 0 if they are smaller.
 _ROUND_OFF, _NO_WEIGHT = 1e-12, 1e-14
 
 
 def resting(gap: Gap, aim: Doubles) -> Doubles | None:
-    """Slopes of the plane on which a rigid body rests under a force at `aim`. Among the planes below the undeformed
-    distance it is the highest at `aim`. It touches three elements around `aim`, or two elements of a line. None if no
-    elements surround `aim`."""
+    """Returns the slopes of the plane on which a rigid body rests under a force at `aim`; None if no elements surround `aim`.
+
+    Among all planes below the undeformed distance this plane is the highest at `aim`. It touches three elements around `aim`, or two elements of a line.
+    """
     iy, ix = np.nonzero(np.isfinite(gap.h))
     sizes = np.array([gap.h.shape[1] * gap.dx, gap.h.shape[0] * gap.dy])
     places = (np.stack([gap.x[ix], gap.y[iy]], axis=1) - aim) / sizes
@@ -31,16 +32,16 @@ def resting(gap: Gap, aim: Doubles) -> Doubles | None:
     count, heights = points.shape[1], gap.h[iy, ix] - gap.h.min()
     span = float(heights.max()) or 1.0
     heights /= span
-    # Corners around `aim`, far away and far up.
+    # The first corners of the simplex are far away around `aim`, and far up.
     corners = np.column_stack([27.0 * np.eye(count)[:, :-1] - 9.0, np.ones(count)])
     at, inside = np.full(count, _HIGH), np.zeros(count, dtype=bool)
-    for _ in range(_TURNS):
+    for _ in range(_MOST_STEPS):
         plane = np.linalg.solve(corners, at)
         above = heights - points @ plane
         lowest = int(np.argmin(above))
         if above[lowest] >= -_ROUND_OFF:
             break
-        # The weight of the lowest element grows until the weight of a corner is 0. The element replaces this corner.
+        # The weights of the corners carry a unit force at `aim`. The weight of the lowest element grows until the weight of a corner is 0, which it replaces.
         weights, changes = np.linalg.solve(corners.T, np.column_stack([np.eye(count)[-1], points[lowest]])).T
         ratios = np.full(count, np.inf)
         np.divide(weights, changes, out=ratios, where=changes > _NO_WEIGHT)

@@ -1,4 +1,4 @@
-"""Heights as text: rows of numbers."""
+"""Reads rows of numbers from texts."""
 
 from __future__ import annotations
 
@@ -17,9 +17,12 @@ _BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons", "\t": "tabs"}
 
 
 def of_text(path: str | os.PathLike[str], end: str, above: int = 0) -> Any:
-    """Columns of numbers. Spaces separate the numbers of a line, in .csv files commas, or semicolons if there are any; then commas are
-    decimal points. Cells of .csv files may be quoted. Cells without a number are NaN, and so are empty cells between tabs. So many lines
-    `above` the numbers are not read."""
+    """Reads the numbers of a text as an array of lines and columns.
+
+    Numbers are separated by semicolons, if the first line has any; then commas are decimal points. Otherwise commas separate the numbers of .csv files, and
+    blanks or tabs those of others. Cells may be quoted where commas or semicolons separate them. Cells without a number are NaN, as are empty cells between
+    tabs. The first `above` lines are not read.
+    """
     lines = [line.split("#")[0] for line in text_of(path).splitlines()[above:]]
     tabs, lines = _between_tabs(lines), [line for line in lines if line.strip()]
     if not lines:
@@ -47,7 +50,7 @@ def of_text(path: str | os.PathLike[str], end: str, above: int = 0) -> Any:
 
 
 def refuse_skipped_rows(path: str | os.PathLike[str]) -> None:
-    """Refuses a map with a word in a row of numbers. SurfaceTopography takes such a row for a line of the header, and leaves it out."""
+    """Refuses a map with a word in a row of numbers. SurfaceTopography would take such a row for a line of the header, and leave it out."""
     rows = [line.split() for line in text_of(path).splitlines()]
     counts = [sum(map(_is_number, row)) for row in rows]
     full = [k for k, (row, count) in enumerate(zip(rows, counts)) if row and count == len(row)]
@@ -67,7 +70,7 @@ def refuse_skipped_rows(path: str | os.PathLike[str]) -> None:
             raise ValueError(f"{path}: line {k + 1} has {word!r} among its numbers; write nan where nothing was measured, and comments on lines of their own")
 
 
-# Rows of fewer numbers may be lines of a header.
+# Maps with fewer columns are not checked by `refuse_skipped_rows`, because their rows look like lines of a header.
 _LEAST_WIDTH = 4
 
 # Words that stand for holes, and damaged numbers. Above and below the numbers, lines with other words are those of a header.
@@ -83,20 +86,20 @@ def _is_number(cell: str) -> bool:
     return True
 
 
-# Cells between quotes.
+# A cell in quotation marks.
 _QUOTED = re.compile(r'"[^"]*"')
 
-# Exponents of Fortran.
+# The exponent letter D of Fortran within a number.
 _FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[-+\d])")
 
 
 def has_empty_cells(path: str | os.PathLike[str]) -> bool:
-    """Whether single tabs separate the numbers of all lines of a file, and some cells are empty."""
+    """Whether single tabs separate the cells of all lines of a file, and some cells are empty."""
     return _between_tabs([line.split("#")[0] for line in text_of(path).splitlines()]) is not None
 
 
 def _between_tabs(lines: list[str]) -> list[str] | None:
-    """Lines of cells between tabs whose empty cells are NaN; None without empty cells, or if single tabs do not separate all numbers."""
+    """The lines of a text with nan in the empty cells between tabs; None without empty cells, or if single tabs do not separate all numbers."""
     lines = [line.replace('"', "").strip(" \r") for line in lines]
     most = max((line.count("\t") for line in lines), default=0)
     # A line without a number is a row of holes if it has as many cells as the others.
@@ -112,14 +115,14 @@ def _between_tabs(lines: list[str]) -> list[str] | None:
         if len({sum(map(bool, row)) for row in rows}) == 1:
             warnings.warn("some numbers are parted by several tabs, and lines differ in their cells: tabs in a row are one; write nan for holes", stacklevel=4)
         return None
-    # Two tabs between all numbers stand for one.
+    # If every second cell of all lines is empty, two tabs stand for one between all numbers.
     if not all(any(cell for row in rows for cell in row[first::2]) for first in (0, 1)) or all(cell for row in rows for cell in row):
         return None
     return ["\t".join(cell or "nan" for cell in row) for row in rows]
 
 
 def _without_end(rows: list[list[str]]) -> list[list[str]]:
-    """Without the tabs at the end of all lines, or of those that are longer by one."""
+    """The rows without the empty last cell that a tab at the end of all lines, or of the lines that are longer by one, makes."""
     shortest = min(len(row) for row in rows)
     if all(len(row) == shortest and not row[-1] for row in rows):
         return [row[:-1] for row in rows]
@@ -127,7 +130,7 @@ def _without_end(rows: list[list[str]]) -> list[list[str]]:
 
 
 def _filled(lines: list[str], delimiter: str) -> list[str]:
-    """Lines whose empty cells are NaN. A delimiter at the end of every line stands for nothing."""
+    """The lines with nan in their empty cells. A delimiter at the end of every line does not make a cell."""
     lines = [line.strip() for line in lines]
     if all(line.endswith(delimiter) for line in lines):
         lines = [line[:-1] for line in lines]
