@@ -30,8 +30,8 @@ fn centres(grid: &Grid) -> impl Iterator<Item = [f64; 2]> {
     (0..mx * my).map(move |i| [along(i % mx, mx), along(i / mx, my)])
 }
 
-/// A self-affine surface of waves with random phases. The amplitudes are proportional to the wave number to the power -(1 + Hurst exponent), or -(1/2
-/// + Hurst exponent) for a line. They are constant below the roll-off wave number, and 0 above that of the shortest wave. Distances are measured down
+/// A self-affine surface of waves with random phases. The amplitudes are proportional to the wave number to the power `-(1 + Hurst exponent)`, or
+/// `-(1/2 + Hurst exponent)` for a line. They are constant below the roll-off wave number, and 0 above that of the shortest wave. Distances are measured down
 /// from the highest point, and their rms about the mean is 1. The surface is periodic if the numbers of elements are powers of two.
 pub fn self_affine(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let Grid { mx, my, .. } = *grid;
