@@ -17,7 +17,7 @@ use crate::slide::Slide;
 /// The components x and y of a field of vectors.
 type Pair = [Vec<f64>; 2];
 
-/// The inputs and outputs of a call with friction, except those of the normal problem. Arrays have room for [`ROOM`] elements.
+/// The inputs and outputs of a call with friction, except those of the normal problem. Arrays have room for `ROOM` elements.
 pub struct Sliding {
     /// The friction coefficients of the elements; empty: there is one for all.
     mu: Vec<f64>,
