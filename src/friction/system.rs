@@ -173,7 +173,7 @@ impl System for TangentSystem<'_> {
     }
 }
 
-/// The inverse of a 2 x 2 matrix, given by rows, or its pseudo-inverse if it is singular. S need not be symmetric.
+/// The inverse of a 2 x 2 matrix given by rows, symmetric or not. If it is singular, the pseudo-inverse of its symmetric part.
 pub fn inverse(matrix: [Vector; 2]) -> [Vector; 2] {
     let [[a, b], [c, d]] = matrix;
     let (determinant, largest) = (a * d - b * c, [a, b, c, d].into_iter().fold(0.0, |most: f64, m| most.max(m.abs())));

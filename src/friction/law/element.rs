@@ -59,7 +59,7 @@ pub struct Response {
     pub yields: bool,
 }
 
-/// The slip and bound of an element at which the bound plus rho times the slip equals a given traction.
+/// The response of an element at the slip at which the bound plus rho times the slip equals a given traction.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Resolved {
     /// Whether the element slips. It sticks if its bound at rest carries the traction.
@@ -111,7 +111,7 @@ impl Law {
             slopes: [of_mu, of_limit],
             yields: false,
         };
-        // A layer that softens goes on yielding where friction falls below the limit from which it has softened.
+        // A softening layer whose limit is below friction at rest yields at every slip, also where friction has fallen below that limit.
         let at_rest = || pressure * self.coefficient(0.0, coefficient, before).0;
         let yields_first = |layer: &PlasticLayer| limit < cap || layer.hardening < 0.0 && limit < at_rest();
         let Some(layer) = self.layer.filter(yields_first) else { return by_friction(limit, unchanged_limit) };

@@ -8,8 +8,9 @@
 //! B(s) = N/D,    N = 1 + 4 s kappa th - lambda kappa th^2,    D = 1 - (lambda + kappa + 4 kappa s^2) th + lambda kappa th^2
 //! ```
 //!
-//! B(0) = mu (1 - nu2)/(1 - nu1) is the response of the substrate alone, B(infinity) = 1 that of the layer alone. For small s the terms of N and
-//! D cancel, the more the stiffer the layer is. Therefore N and D are written as sums without cancellation, with
+//! B(0) = mu (1 - nu2)/(1 - nu1) is the response of the substrate alone, B(infinity) = 1 that of the layer alone. For small s the terms of D
+//! cancel if the layer is stiff, and those of N if it is stiff or soft. There N and D are written as sums without cancellation. For N a layer is
+//! stiff if kappa >= 0 and lambda > 0, for D if kappa >= 0. The terms of a soft layer's D do not cancel.
 //!
 //! ```text
 //! 1 - lambda kappa = B(0) (1 - lambda)(1 - kappa)
@@ -65,7 +66,7 @@ impl Transfer {
         }
     }
 
-    /// B(s) - 1 for s >= 1, from the formulas without rearrangement. `factor` is 1 + 2 s for a pressure and 1 - 2 s for a traction.
+    /// B(s) - 1 = (N - D)/D for s >= 1, where the terms of N - D do not cancel. `factor` is 1 + 2 s for a pressure and 1 - 2 s for a traction.
     pub(super) fn less_one_by_exponentials(&self, s: f64, factor: f64) -> f64 {
         if s > ZERO_EXPONENTIALS {
             return 0.0;
@@ -138,7 +139,7 @@ impl Response for Transfer {
         self.substrate
     }
 
-    // The series of N and D are in terms of `1 - lambda` and `1 - kappa`, which avoids cancellation for stiff layers.
+    // Only the constant term of N would cancel; it is stored. The series of D is in terms of `1 - lambda` and `1 - kappa`.
     fn taylor(&self) -> [f64; TERMS] {
         let n = |k: i32| match k {
             0 => self.one_minus_product,

@@ -3,10 +3,11 @@
 //! What the coating adds to the response to a wave k is the sum over k and its aliases `k + 2 pi (a/dx, b/dy)` of `2 pi c (B(k t) - 1)/k sinc(kx
 //! dx/2) sinc(ky dy/2)`. Its terms decay as `exp(-2 k t)`, so that thin coatings have many aliases. They are summed in two groups:
 //!
-//! * the first aliases, and for slender elements those along the longer side, are computed for each wave;
+//! * the wave itself, and for slender elements also its nearest aliases along the longer side, are computed for each wave;
 //! * the sum of all others is a smooth function of the wave on `[0, pi/dx] x [0, pi/dy]`, and is interpolated. Its singularities are those of
-//!   `1/k`, at a distance from each end of at least half the interval. Therefore interpolation at n Chebyshev nodes in each direction has the
-//!   error `r^-n`, `r + 1/r = 2 + 2 sqrt(2)`: 1e-16 for n = 24. On grids with fewer waves than nodes the sum is computed for each wave.
+//!   `1/k`. Each lies at least one length of the interval beyond both ends. Therefore interpolation at n Chebyshev nodes in each direction has the
+//!   error `r^-n`, where r is the sum of the half axes of the Bernstein ellipse through the nearest singularity: `r + 1/r = 2 + 2 sqrt(2)`, and the
+//!   error is 1e-16 for n = 24. On grids with fewer waves than nodes the sum is computed for each wave.
 
 use std::f64::consts::PI;
 
