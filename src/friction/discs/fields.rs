@@ -12,7 +12,8 @@ pub struct Fields<'a> {
     pub bound: &'a mut [f64],
     /// The compliance of a layer between the bodies, less its least one.
     pub excess: &'a mut [f64],
-    /// D on slip: the direction of the slip follows the traction around the circle as by a layer of compliance D (see [`tangent`](super::super::tangent)).
+    /// D on slip: the direction of the slip follows the traction around the circle as by a layer of compliance D (see
+    /// [`tangent`](super::super::tangent)).
     pub curvature: &'a mut [f64],
     /// The slip w without the displacement u.
     pub slip: Both<'a>,
