@@ -4,7 +4,7 @@ use toeplitz::coefficients::SYMMETRY;
 
 use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::Grid;
-use crate::influence::LARGEST_RATIO;
+use crate::influence::offset_beyond;
 use crate::memory::copied;
 
 /// The caller's tangential influence coefficients, in the caller's memory.
@@ -137,14 +137,10 @@ impl TangentialInfluence<'_> {
     /// at such an offset is indefinite.
     fn check_largest(&self) -> Result<()> {
         let [xx, yy, _] = self.at(0, 0);
-        let most = [xx, yy, xx.sqrt() * yy.sqrt()].map(|own| LARGEST_RATIO * own);
-        let (last_x, last_y) = (self.cx as i64 - 1, self.cy as i64 - 1);
-        for (kx, ky) in (0..=last_y).flat_map(|ky| (-last_x..=last_x).map(move |kx| (kx, ky))) {
-            let (one, opposite) = (self.at(kx, ky), self.at(-kx, -ky));
-            if let Some(k) = (0..3).find(|&k| 0.5 * (one[k] + opposite[k]).abs() > most[k]) {
-                let ((kx, ky), value) =
-                    if one[k].abs() >= opposite[k].abs() { ((kx, ky), one[k]) } else { ((-kx, -ky), opposite[k]) };
-                let (name, value, own) = (SYMMETRIES[k].name, Number(value), Number(most[k] / LARGEST_RATIO));
+        let last = (self.cx as i64 - 1, self.cy as i64 - 1);
+        for (k, own) in [xx, yy, xx.sqrt() * yy.sqrt()].into_iter().enumerate() {
+            if let Some((kx, ky)) = offset_beyond(own, last, |kx, ky| self.at(kx, ky)[k]) {
+                let (name, value, own) = (SYMMETRIES[k].name, Number(self.at(kx, ky)[k]), Number(own));
                 return Err(Error::NotPositiveDefinite(format!(
                     "{name} at offset ({kx}, {ky}) is {value}; the coefficients at (0, 0) allow {own}: no elastic body moves another element more than \
                      the one that is pulled. Offset (0, 0) is value [cy][cx] of the table"

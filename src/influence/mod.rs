@@ -43,4 +43,4 @@ pub use patches::Patches;
 pub use periodic::Periodic;
 pub use row_tables::RowTables;
 pub use table::Table;
-pub(crate) use table::LARGEST_RATIO;
+pub(crate) use table::{offset_beyond, LARGEST_RATIO};

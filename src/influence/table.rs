@@ -74,32 +74,18 @@ impl Table {
 
     /// Refuses a table in which a coefficient exceeds that of an element on itself.
     pub(crate) fn check_largest(&self) -> Result<()> {
-        let Some((kx, ky)) = self.beyond_own() else { return Ok(()) };
+        let own = self.at(0, 0);
+        if self.properties.largest <= LARGEST_RATIO * own {
+            return Ok(());
+        }
+        let last = (self.cx as i64 - 1, self.cy as i64 - 1);
+        let Some((kx, ky)) = offset_beyond(own, last, |kx, ky| self.at(kx, ky)) else { return Ok(()) };
         Err(Error::NotPositiveDefinite(format!(
             "influence.coefficients at offset ({kx}, {ky}) is {}, and {} at (0, 0): no elastic body moves another element more than the one that is \
              pressed. Offset (0, 0) is value [cy][cx] of the table",
             Number(self.at(kx, ky)),
-            Number(self.at(0, 0))
+            Number(own)
         )))
-    }
-
-    /// An offset k for which the mean of the coefficients at k and -k exceeds the coefficient at offset (0, 0) in size. Two elements at this
-    /// offset alone have an indefinite matrix. Of k and -k, the offset with the larger coefficient is returned.
-    fn beyond_own(&self) -> Option<(i64, i64)> {
-        let most = LARGEST_RATIO * self.at(0, 0);
-        if self.properties.largest <= most {
-            return None;
-        }
-        let (last_x, last_y) = (self.cx as i64 - 1, self.cy as i64 - 1);
-        let mut offsets = (0..=last_y).flat_map(|ky| (-last_x..=last_x).map(move |kx| (kx, ky)));
-        let mean = |(kx, ky): (i64, i64)| 0.5 * (self.at(kx, ky) + self.at(-kx, -ky)).abs();
-        offsets.find(|offset| mean(*offset) > most).map(|(kx, ky)| {
-            if self.at(kx, ky).abs() >= self.at(-kx, -ky).abs() {
-                (kx, ky)
-            } else {
-                (-kx, -ky)
-            }
-        })
     }
 
     /// Whether the table has exactly the offsets of `grid`, not those of a larger grid.
@@ -238,4 +224,17 @@ impl Kernel for Table {
     fn bytes(&self) -> usize {
         size_of_val(&self.values[..])
     }
+}
+
+/// An offset k for which the mean of the coefficients `at` k and -k exceeds `own`, that of an element on itself, in size. Two elements at this offset
+/// alone have an indefinite matrix. Of k and -k, the offset with the larger coefficient is returned. `last`: the largest offsets in x and in y.
+pub(crate) fn offset_beyond(
+    own: f64,
+    (last_x, last_y): (i64, i64),
+    at: impl Fn(i64, i64) -> f64,
+) -> Option<(i64, i64)> {
+    let mut offsets = (0..=last_y).flat_map(|ky| (-last_x..=last_x).map(move |kx| (kx, ky)));
+    let mean = |(kx, ky): (i64, i64)| 0.5 * (at(kx, ky) + at(-kx, -ky)).abs();
+    let (kx, ky) = offsets.find(|offset| mean(*offset) > LARGEST_RATIO * own)?;
+    Some(if at(kx, ky).abs() >= at(-kx, -ky).abs() { (kx, ky) } else { (-kx, -ky) })
 }
