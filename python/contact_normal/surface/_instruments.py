@@ -13,8 +13,8 @@ from typing import Any
 from .._texts import starts_with_mark, text_of
 from ._texts import refuse_skipped_rows
 
-# Texts that SurfaceTopography reads as maps; others may be binary.
-_TEXTS = ".asc", ".xyz", ".tsv"
+# Texts that SurfaceTopography reads as maps, whatever they contain. Files of other names may be binary.
+TEXTS = ".asc", ".xyz", ".tsv"
 
 # The message on files and topographies without sizes. The command line recognises it by its words "size of an element".
 NO_SIZE = "does not say the size of an element: give size, the lengths of the field, or dx and dy"
@@ -35,7 +35,7 @@ def of_instrument(path: str | os.PathLike[str], end: str, variable: str | None, 
         open_topography = importlib.import_module("SurfaceTopography").open_topography
     except ImportError as error:
         raise ImportError(f"{error}; files {end or 'without an end'} need SurfaceTopography: pip install 'contact-normal[surface]'") from error
-    is_marked = end in _TEXTS and Path(path).is_file() and starts_with_mark(path)
+    is_marked = end in TEXTS and Path(path).is_file() and starts_with_mark(path)
     with _tried(lambda: open_topography(io.StringIO(text_of(path), newline=None) if is_marked else os.fspath(path)), path) as reader:
         if reader.format() == "asc":
             refuse_skipped_rows(path)

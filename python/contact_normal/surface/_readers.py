@@ -15,7 +15,7 @@ from .._units import same_length
 from ._given import SIZES, steps_of, with_header, with_unit
 from ._headers import header_of, refuse_esri_grid
 from ._heights import Heights, heights
-from ._instruments import NO_SIZE, chosen, of_instrument, size_of
+from ._instruments import NO_SIZE, TEXTS, chosen, of_instrument, size_of
 from ._lists import of_list, of_text_list
 from ._not_a_map import doubt
 from ._not_a_map import why as why_no_map
@@ -129,7 +129,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         refuse_esri_grid(path)
     # Some instruments write binary files with the endings of texts, so the contents decide.
     of_numbers = end in (".txt", ".dat", ".csv") and is_text(path)
-    of_others = end in _TEXTS and Path(path).exists() and is_text(path)
+    of_others = end in TEXTS and Path(path).exists() and is_text(path)
     # SurfaceTopography would shift the columns after an empty cell.
     if of_numbers or of_others and has_empty_cells(path):
         _refuse_variable(path, variable)
@@ -148,7 +148,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     topography = of_instrument(path, end, variable, bool(SIZES & set(given)))
     if end == ".mat":
         given = {"axes": "yx", **given}
-    if end in _TEXTS and getattr(topography, "dim", 2) == 2:
+    if end in TEXTS and getattr(topography, "dim", 2) == 2:
         # Arrays of SurfaceTopography have x as the first index, so the transposed array has the lines of the file.
         values = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
         steps = steps_of(values.T.shape, given)
@@ -195,10 +195,6 @@ def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]
     if reason := doubt(values):
         warnings.warn(f"{path} {reason}", stacklevel=3)
     return heights(values, **given)
-
-
-# The endings of texts that SurfaceTopography reads as maps, even if they are lists of points.
-_TEXTS = ".asc", ".xyz", ".tsv"
 
 
 def _refuse_variable(path: str | os.PathLike[str], variable: str | None) -> None:
