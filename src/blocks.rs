@@ -10,8 +10,8 @@ use crate::threads::Threads;
 
 /// Most blocks of a pass over a grid, because each block has a fixed cost.
 pub const BLOCKS: usize = 64;
-/// About the least number of elements of a block, which consists of whole rows. Two fields of so many two-component vectors fit into the first-level
-/// cache.
+/// The approximate minimum of the elements of a block, which consists of whole rows. Two fields of this many two-component vectors fit into the
+/// first-level cache.
 pub const BLOCK: usize = 1024;
 /// The number of partial sums of a pass, one for each lane of the longest SIMD vector. The compiler vectorises loops over them. Their number is the
 /// same on all machines, and so are the bits of sums. The flags (bool) of this many elements are the bytes of a 64-bit word.

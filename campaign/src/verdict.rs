@@ -5,7 +5,7 @@
 pub struct Failure {
     /// The promise, in a few words.
     pub promise: &'static str,
-    /// What is wrong.
+    /// How it is broken, in words and numbers.
     pub details: String,
 }
 

@@ -1,6 +1,6 @@
 //! Continuation along a branch of states, with the approach as the parameter. Each state starts from the line through the two states before it.
 //! Newton's method takes cautious steps, to a tolerance that distinguishes the forces of neighbouring states. If it fails, or if the contact area
-//! changes by much, the step of the approach is halved. If short steps fail, too, the branch ends and the bodies snap. Descent is faster far
+//! changes by much, the step of the approach is halved. If short steps also fail, the branch ends and the bodies snap. Descent is faster far
 //! beyond the end of a branch than next to it; therefore the step over a snap is long.
 
 use super::level::{Level, MakeFrozen};

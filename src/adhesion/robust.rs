@@ -1,4 +1,4 @@
-//! Solves one grid. First comes Newton's method, and if it fails, Newton's method in cautious steps. If these fail, too, or end at a larger
+//! Solves one grid. First comes Newton's method, and if it fails, Newton's method in cautious steps. If these also fail, or end at a larger
 //! energy or at a saddle, some steps of descent follow, from the last iterate from which descent can continue. Then comes Newton's method again:
 //! first in bold steps, later in firm and cautious ones in turns.
 

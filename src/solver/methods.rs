@@ -160,8 +160,8 @@ impl Methods {
         Ok(Beginning::GoOn)
     }
 
-    /// Prepares the state for `stage`, which is not the first method. It starts from the best iterate. Exceptions: NORM starts from p = 0 if the best
-    /// iterate has a violation above [`LARGEST_USEFUL`]; PROJECTED_CG only follows a direct solve and starts from its last state.
+    /// Prepares the state for `stage`, which is not the first method. It starts from the best iterate, or from all elements at their limits if the best
+    /// iterate has lost them. NORM starts anew if its violation exceeds [`LARGEST_USEFUL`]. PROJECTED_CG follows a direct solve, from its last state.
     fn hand_over<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<()> {
         if stage != Stage::ProjectedCg {
             log::info!("no further progress on this scene: {stage:?} takes over");

@@ -1,5 +1,5 @@
 //! Makes a grid, coefficients and values of random bytes, and compares their product with the sum term by term. The cargo-fuzz target `product` in
-//! fuzz/ uses this module, too.
+//! fuzz/ also uses this module.
 
 use par::threads::Threads;
 use toeplitz::coefficients::SYMMETRY;
